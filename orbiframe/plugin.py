@@ -1,0 +1,40 @@
+"""How a plugin declares itself: components as strings, and the two hooks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import pluggy
+
+KINDS = ("geometry", "group", "parametrizer", "basis", "fitter", "reader", "writer", "command")
+
+hookspec = pluggy.HookspecMarker("orbiframe")
+hookimpl = pluggy.HookimplMarker("orbiframe")
+
+
+@dataclass(frozen=True, slots=True)
+class Component:
+    """A named way to do one step; imported when first used.
+
+    kind: one of `KINDS`; name: as written in a configuration ("least-squares"); target: "package.module:object";
+    summary: one line, shown by `orbiframe plugins`; extra: the pip requirement that supplies an optional dependency;
+    suffixes: file suffixes with their dot, lower case (readers and writers only).
+    """
+
+    kind: str
+    name: str
+    target: str
+    summary: str
+    extra: str | None = None
+    suffixes: tuple[str, ...] = ()
+
+
+@hookspec
+def orbiframe_components() -> Iterable[Component]:  # type: ignore[empty-body]
+    """The components that a plugin supplies."""
+
+
+@hookspec
+def orbiframe_stage_done(stage: str, result: object, seconds: float) -> None:
+    """Called after each stage of a fit with its result and the seconds that it took."""
