@@ -1,0 +1,12 @@
+"""Suggestion: the known name nearest to a mistyped one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """The sentence " Did you mean 'gaussian'?" with its leading space, or nothing where no known name is near."""
+    near = get_close_matches(word, list(known), n=1)
+    return f" Did you mean '{near[0]}'?" if near else ""
