@@ -6,8 +6,8 @@ import importlib
 import os
 from collections.abc import Callable, Iterable
 from importlib.metadata import EntryPoint, entry_points
-from itertools import chain
 from pathlib import Path
+from typing import cast
 
 import pluggy
 
@@ -121,8 +121,8 @@ class Registry:
         if not self._manager.get_hookcallers(declarations):
             raise PluginError(f"plugin '{name}' declares no hook; mark orbiframe_components with @hookimpl")
         hook = self._manager.hook.orbiframe_components
-        found = [call.function() for call in hook.get_hookimpls() if call.plugin is declarations]
-        return [_checked(component, name) for component in chain.from_iterable(found)]
+        calls = [call for call in hook.get_hookimpls() if call.plugin is declarations]
+        return [_checked(item, name) for call in calls for item in cast("Iterable[object]", call.function())]
 
 
 def resolve(component: Component) -> Callable[..., object]:
@@ -131,14 +131,18 @@ def resolve(component: Component) -> Callable[..., object]:
     title = f"{component.kind} '{component.name}'"
     try:
         found = getattr(importlib.import_module(module), attribute)
-    except ModuleNotFoundError as error:
-        hint = f"which is not installed: pip install \"{component.extra or error.name}\""
-        raise PluginError(f"{title} needs the package '{error.name}', {hint}") from error
     except Exception as error:
+        if isinstance(error, ModuleNotFoundError) and error.name and _root(error.name) != _root(module):
+            hint = f'which is not installed: pip install "{component.extra or _root(error.name)}"'
+            raise PluginError(f"{title} needs the package '{_root(error.name)}', {hint}") from error
         raise PluginError(f"{title} cannot be imported from '{component.target}': {_described(error)}") from error
     if not callable(found):
         raise PluginError(f"{title}: the target '{component.target}' cannot be called; name a class or a function")
     return found  # type: ignore[no-any-return]
+
+
+def _root(module: str) -> str:
+    return module.partition(".")[0]
 
 
 def _chosen(entries: list[EntryPoint], only: Iterable[str] | None) -> list[EntryPoint]:
