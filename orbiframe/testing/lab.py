@@ -1,0 +1,55 @@
+"""Lab: what a law gets to try a component on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from orbiframe.polyhedron import Polyhedron
+from orbiframe.testing.polyhedra import reference_polyhedra
+
+if TYPE_CHECKING:
+    from orbiframe.orbifold import Orbifold
+    from orbiframe.triangulation import Triangulation
+
+
+@dataclass(frozen=True)
+class Lab:
+    """A fresh folder, random numbers that repeat, and reference objects.
+
+    tmp_path: an empty folder; params: the options that are bound to the component under test; suffix: the file suffix
+    to try (readers and writers); counterpart: the writer for a reader, the reader for a writer, None where there is
+    none.
+    """
+
+    tmp_path: Path
+    params: Mapping[str, object] = field(default_factory=dict)
+    suffix: str | None = None
+    counterpart: Callable[..., Any] | None = None
+
+    @cached_property
+    def rng(self) -> np.random.Generator:
+        """A generator of random numbers with a fixed seed; each lab starts it anew."""
+        return np.random.default_rng(20071)
+
+    @cached_property
+    def polyhedra(self) -> Mapping[str, Polyhedron]:
+        """Small closed polyhedra by name: quads and n-gons, an orientable torus, a nonorientable projective plane."""
+        return reference_polyhedra()
+
+    @cached_property
+    def triangulations(self) -> Mapping[str, Triangulation]:
+        """Small triangulations of X/H by name, at least one for each sign of the curvature."""
+        from orbiframe.testing.reference import reference_triangulations
+
+        return reference_triangulations()
+
+    @cached_property
+    def orbifolds(self) -> Mapping[str, Orbifold]:
+        """The surfaces X/H of `triangulations`, by the same names."""
+        return {name: triangulation.orbifold for name, triangulation in self.triangulations.items()}

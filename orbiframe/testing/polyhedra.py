@@ -1,0 +1,55 @@
+"""Small closed polyhedra that every law may be tried on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from orbiframe.polyhedron import Polyhedron
+
+
+def reference_polyhedra() -> Mapping[str, Polyhedron]:
+    """Closed polyhedra by name, from the sphere to the projective plane, with triangles, quads and larger faces."""
+    return {
+        "tetrahedron": _tetrahedron(),
+        "cube": _cube(),
+        "prism": _prism(5),
+        "torus": _seven_vertex_torus(),
+        "projective plane": _six_vertex_projective_plane(),
+    }
+
+
+def _tetrahedron() -> Polyhedron:
+    corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
+    return Polyhedron.from_faces(corners, [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])
+
+
+def _cube() -> Polyhedron:
+    corners = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    return Polyhedron.from_faces(corners, faces)
+
+
+def _prism(sides: int) -> Polyhedron:
+    """A prism: two polygons and a ring of quads."""
+    angle = 2 * np.pi * np.arange(sides) / sides
+    ring = np.stack([np.cos(angle), np.sin(angle), np.zeros(sides)], axis=1)
+    walls = [[i, (i + 1) % sides, (i + 1) % sides + sides, i + sides] for i in range(sides)]
+    lids = [list(range(sides))[::-1], list(range(sides, 2 * sides))]
+    return Polyhedron.from_faces(np.concatenate([ring, ring + np.array([0, 0, 1.5])]), [*lids, *walls])
+
+
+def _seven_vertex_torus() -> Polyhedron:
+    """The torus of Möbius on 7 vertices, embedded after Császár (1949): every two vertices share an edge."""
+    vertices = [[3, -3, 0], [3, 3, 1], [1, 2, 3], [-1, -2, 3], [-3, -3, 1], [-3, 3, 0], [0, 0, 15]]
+    faces = "012 610 024 530 036 045 521 431 135 641 234 632 256 654".split()
+    return Polyhedron.from_faces(vertices, [[int(corner) for corner in face] for face in faces])
+
+
+def _six_vertex_projective_plane() -> Polyhedron:
+    """The projective plane on 6 vertices: the icosahedron with opposite vertices identified (no embedding exists)."""
+    vertices = [[0.0, 0.0, 1.0], [1, 0, 0], [0.3, 1, 0], [-0.8, 0.6, 0.2], [-0.8, -0.6, -0.3], [0.3, -1, 0.1]]
+    cap = [[0, i, i % 5 + 1] for i in range(1, 6)]
+    rim = [[i, i % 5 + 1, (i + 2) % 5 + 1] for i in range(1, 6)]
+    return Polyhedron.from_faces(vertices, cap + rim)
