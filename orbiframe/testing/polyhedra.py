@@ -43,13 +43,13 @@ def _prism(sides: int) -> Polyhedron:
 def _seven_vertex_torus() -> Polyhedron:
     """The torus of Möbius on 7 vertices, embedded after Császár (1949): every two vertices share an edge."""
     vertices = [[3, -3, 0], [3, 3, 1], [1, 2, 3], [-1, -2, 3], [-3, -3, 1], [-3, 3, 0], [0, 0, 15]]
-    faces = "012 610 024 530 036 045 521 431 135 641 234 632 256 654".split()
+    faces = ["012", "610", "024", "530", "036", "045", "521", "431", "135", "641", "234", "632", "256", "654"]
     return Polyhedron.from_faces(vertices, [[int(corner) for corner in face] for face in faces])
 
 
 def _six_vertex_projective_plane() -> Polyhedron:
     """The projective plane on 6 vertices: the icosahedron with opposite vertices identified (no embedding exists)."""
-    vertices = [[0.0, 0.0, 1.0], [1, 0, 0], [0.3, 1, 0], [-0.8, 0.6, 0.2], [-0.8, -0.6, -0.3], [0.3, -1, 0.1]]
+    vertices = np.array([[0.0, 0.0, 1.0], [1, 0, 0], [0.3, 1, 0], [-0.8, 0.6, 0.2], [-0.8, -0.6, -0.3], [0.3, -1, 0.1]])
     cap = [[0, i, i % 5 + 1] for i in range(1, 6)]
     rim = [[i, i % 5 + 1, (i + 2) % 5 + 1] for i in range(1, 6)]
     return Polyhedron.from_faces(vertices, cap + rim)

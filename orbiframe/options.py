@@ -1,0 +1,104 @@
+"""Options: the keyword-only arguments of a component, which come from the configuration."""
+
+from __future__ import annotations
+
+import inspect
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+from orbiframe.errors import ConfigError
+from orbiframe.suggestion import did_you_mean
+
+
+@dataclass(frozen=True, slots=True)
+class Option:
+    """One option of a component: its name, its type and its default (`inspect.Parameter.empty` where there is none)."""
+
+    name: str
+    annotation: Any
+    default: Any
+
+    @property
+    def type_name(self) -> str:
+        """The type as one writes it in Python."""
+        return inspect.formatannotation(self.annotation)
+
+    @property
+    def required(self) -> bool:
+        """Whether a value must be given."""
+        return self.default is inspect.Parameter.empty
+
+
+def options_of(target: Callable[..., Any]) -> list[Option]:
+    """The options of a class or function, read off its signature, in its order."""
+    keywords = [p for p in inspect.signature(target).parameters.values() if p.kind is inspect.Parameter.KEYWORD_ONLY]
+    return [Option(p.name, _evaluated(p.annotation, target), p.default) for p in keywords]
+
+
+def checked_options(
+    target: Callable[..., Any], given: Mapping[str, object], table: str, places: Mapping[str, str]
+) -> dict[str, Any]:
+    """The given options with the types that the signature asks for; a list becomes a tuple where one is asked for.
+
+    table: name of the configuration table; places: where each "table.key" was written. Raises ConfigError for an
+    unknown option, a value of another type, and a missing one; the sentence names the place and what is allowed.
+    """
+    options = {option.name: option for option in options_of(target)}
+    for key in given:
+        require_known(key, options, table, places)
+    for option in options.values():
+        if option.required and option.name not in given:
+            raise ConfigError(
+                f"[{table}] needs the option '{option.name}' ({option.type_name}); set {table}.{option.name}"
+            )
+    return {
+        key: checked_value(options[key].annotation, value, f"{table}.{key}", places) for key, value in given.items()
+    }
+
+
+def require_known(key: str, known: Mapping[str, object], table: str, places: Mapping[str, str]) -> None:
+    """Raise ConfigError if `key` is no key of a configuration table; the sentence names the nearest one and all."""
+    if key not in known:
+        allowed = ", ".join(known) or "none"
+        place = place_of(f"{table}.{key}", places)
+        raise ConfigError(f"{place}[{table}] has no option '{key}'; allowed: {allowed}.{did_you_mean(key, known)}")
+
+
+def checked_value(annotation: Any, value: object, key: str, places: Mapping[str, str]) -> Any:
+    """The value as the type that the annotation asks for; raises ConfigError where it is of another type."""
+    from pydantic import ValidationError
+
+    try:
+        # TOML has the types of JSON, where a tuple is a list; strict, so that "3" is no number and 1 no truth value.
+        return _adapter(annotation).validate_json(json.dumps(value, default=str), strict=True)
+    except ValidationError as error:
+        found = error.errors(include_url=False)[0]
+        inner = "".join(f"[{part}]" for part in found["loc"] if isinstance(part, int))
+        reason = found["msg"][0].lower() + found["msg"][1:]
+        raise ConfigError(f"{place_of(key, places)}{key}{inner} = {value!r}: {reason}") from error
+
+
+@lru_cache(maxsize=256)
+def _cached_adapter(annotation: Any) -> Any:
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(annotation)
+
+
+def _adapter(annotation: Any) -> Any:
+    return _cached_adapter(Any if annotation is inspect.Parameter.empty else annotation)
+
+
+def place_of(key: str, places: Mapping[str, str]) -> str:
+    """The place where a key was written, as the beginning of a sentence; empty where it is unknown."""
+    return f"{places[key]}: " if key in places else ""
+
+
+def _evaluated(annotation: Any, target: Callable[..., Any]) -> Any:
+    if not isinstance(annotation, str):
+        return annotation
+    function = inspect.unwrap(target.__init__ if isinstance(target, type) else target)  # type: ignore[misc]
+    return eval(annotation, dict(getattr(function, "__globals__", {})))
