@@ -16,6 +16,9 @@ _HOMES = {
     "samples": "Samples",
     "basis": "Basis DifferentiableBasis",
     "fitter": "Fitter",
+    "topology": "SurfaceType surface_type",
+    "spacing": "edge_graph farthest_points dijkstra_forest",
+    "group": "Group",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
 

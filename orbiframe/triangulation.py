@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from orbiframe.atlas import Points
+from orbiframe.errors import MapError
 from orbiframe.orbifold import Orbifold
 from orbiframe.polyhedron import Polyhedron
 
@@ -21,7 +25,8 @@ class Triangulation:
 
     polyhedron: the triangle mesh in space, with its connectivity; patch: (V,) and points: (V, 3), where each vertex
     lies; transition: (H,), the lifted edge of halfedge h from i to j runs from points[i] to
-    atlas.isometry[transition[h]] points[j] in the frame of the patch of i.
+    atlas.isometry[transition[h]] points[j] in the frame of the patch of i. group: where the group comes from, and
+    weights: which edge weights made the map, both in words for the report.
     """
 
     orbifold: Orbifold
@@ -29,11 +34,101 @@ class Triangulation:
     patch: Ints
     points: Floats
     transition: Ints
+    group: str = "given"
+    weights: str = "none"
 
+    @cached_property
+    def _corner_transitions(self) -> Ints:
+        """The transition from the frame of the first corner of each triangle to that of each corner, (F, 3)."""
+        t = self.transition.reshape(-1, 3)
+        return np.stack([np.zeros_like(t[:, 0]), t[:, 0], self.orbifold.atlas.inverse[t[:, 2]]], axis=1)
+
+    @cached_property
     def lifts(self) -> Floats:
         """The corners of every triangle in the frame of the patch of its first corner, (F, 3, 3): [face, corner]."""
-        raise NotImplementedError
+        g = self.orbifold.atlas.isometry[self._corner_transitions]
+        return np.einsum("fcij,fcj->fci", g, self.points[self.polyhedron.triangles])
 
     def locate(self, face: Ints, barycentric: Floats) -> Points:
-        """The points of X/H at barycentric coordinates (n, 3) in triangles (n,)."""
-        raise NotImplementedError
+        """The points of X/H at barycentric coordinates (n, 3) in triangles (n,): projective interpolation.
+
+        The lifted corners are combined with the barycentric coordinates and projected to X, so straight segments of a
+        triangle become geodesics. Neighbouring triangles agree on their common edge.
+        """
+        x = np.einsum("nc,nci->ni", barycentric, self.lifts[face])
+        return Points(self.patch[self.polyhedron.triangles[face, 0]], self.orbifold.geometry.project(x))
+
+    @cached_property
+    def face_signs(self) -> NDArray[np.float64]:
+        """+1 or -1 for every triangle, (F,): its orientation in the frame of its first corner, carried from face to
+        face through the transitions, so that on a nonorientable surface too a map without a fold has only triangles
+        of positive sign times area. Raises MapError where the transitions contradict each other.
+        """
+        p, count = self.polyhedron, self.polyhedron.face_count
+        parity = np.sign(np.linalg.det(self.orbifold.atlas.isometry))
+        corner_sign = parity[self._corner_transitions].ravel()
+        here = np.arange(len(p.tail))
+        there = np.where(p.same, p.twin, p.next[p.twin])
+        turned = corner_sign[here] * corner_sign[there] * np.where(p.same, -1, 1) < 0
+        a, b = p.face[here], p.face[there]
+        shift = np.where(turned, count, 0)
+        rows, columns = np.concatenate([a, a + count]), np.concatenate([b + shift, b + count - shift])
+        graph = coo_array((np.ones(len(rows)), (rows, columns)), shape=(2 * count, 2 * count)).tocsr()
+        sheets, label = connected_components(graph, directed=False)
+        if sheets != 2:
+            raise MapError("the transitions of the map reverse orientation inconsistently; the group is not that of the mesh")
+        sign = np.where(label[:count] == label[0], 1.0, -1.0)
+        return sign if float(sign @ np.sign(self._raw_areas)) >= 0 else -sign
+
+    @cached_property
+    def _raw_areas(self) -> Floats:
+        x = self.lifts
+        return self.orbifold.geometry.triangle_area(x[:, 0], x[:, 1], x[:, 2])
+
+    @cached_property
+    def areas(self) -> Floats:
+        """Signed area of every triangle in X, (F,): all are positive exactly if the map is an embedding.
+
+        The sum is the area of X/H for any map with the right group; if all terms are positive besides, the angle sums
+        at the vertices are 2 pi and the map covers X/H once.
+        """
+        return self.face_signs * self._raw_areas
+
+    @property
+    def not_positive(self) -> int:
+        """The number of triangles that are folded over or degenerate; 0 for an embedding."""
+        return int((~(self.areas > 0)).sum())
+
+    @property
+    def area_defect(self) -> float:
+        """The sum of the triangle areas against the area of X/H, relative."""
+        return float(abs(self.areas.sum() / self.orbifold.area - 1.0))
+
+    @property
+    def relation_defect(self) -> float:
+        """How far the transitions round a triangle are from the identity: largest entry over all triangles."""
+        rows = np.unique(self.transition.reshape(-1, 3), axis=0)
+        g = self.orbifold.atlas.isometry[rows]
+        return float(np.abs(g[:, 0] @ g[:, 1] @ g[:, 2] - np.eye(3)).max())
+
+    @cached_property
+    def angle_distortion(self) -> Floats:
+        """The ratio of the singular values of the map on every triangle, (F,); 1 is conformal, inf a collapse."""
+        space = self.polyhedron.vertices[self.polyhedron.triangles]
+        u, v = space[:, 1] - space[:, 0], space[:, 2] - space[:, 0]
+        geometry, x = self.orbifold.geometry, self.lifts
+        frame = geometry.frame(x[:, 0])
+        edges = geometry.log(x[:, :1], x[:, 1:])
+        axes = np.moveaxis(frame, -1, -2)
+        image = geometry.inner(axes[:, :, None, :], edges[:, None, :, :])
+        # In an orthonormal basis of the triangle's plane the edges are the columns of an upper triangular matrix.
+        length = np.linalg.norm(u, axis=1)
+        with np.errstate(all="ignore"):
+            along = np.einsum("fi,fi->f", u, v) / length
+            height = np.linalg.norm(np.cross(u, v), axis=1) / length
+            first = image[..., 0] / length[:, None]
+            second = (image[..., 1] - along[:, None] * first) / height[:, None]
+            square = (first**2).sum(axis=1) + (second**2).sum(axis=1)
+            area = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
+            mean = square / (2 * area)
+            return np.where(np.isfinite(mean), mean + np.sqrt(np.maximum(mean**2 - 1, 0)), np.inf)

@@ -1,0 +1,65 @@
+"""Nested dissection: an elimination order for sparse matrices on a mesh, from the vertex coordinates."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import SuperLU, splu
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+_LEAF = 48
+
+
+def dissection_order(positions: Floats, tail: Ints, head: Ints) -> Ints:
+    """The vertices in an order that keeps factors sparse: halves first, the separator between them last, recursively.
+
+    positions: (V, 3); tail, head: (E,) the ends of the edges. All parts of one level are halved at once, across
+    their widest axis; the separator is made of the vertices of one half with a neighbour in the other. Geometric
+    nested dissection (George 1973; Gilbert, Miller, Teng 1998): O(V log^2 V) time, about V log V entries in a factor.
+    """
+    count = len(positions)
+    part = np.zeros(count, dtype=np.intp)
+    code = np.zeros(count, dtype=np.int64)
+    alive = np.arange(count)
+    depth = 0
+    while len(alive) and np.bincount(part[alive]).max() > _LEAF and depth < 36:
+        right = _upper_half(positions[alive], part[alive])
+        side = np.full(count, -1, dtype=np.intp)
+        side[alive] = right
+        crossing = (side[tail] >= 0) & (side[head] >= 0) & (part[tail] == part[head]) & (side[tail] != side[head])
+        ends = np.concatenate([tail[crossing], head[crossing]])
+        separator = np.zeros(count, dtype=np.bool_)
+        separator[ends[side[ends] == 0]] = True
+        code *= 3
+        code[alive] += right
+        code[side < 0] += 2
+        code[separator] += 2 - code[separator] % 3
+        part[alive] = 2 * part[alive] + right
+        alive = alive[~separator[alive]]
+        _, part[alive] = np.unique(part[alive], return_inverse=True)
+        depth += 1
+    return np.argsort(code, kind="stable")
+
+
+def _upper_half(positions: Floats, part: Ints) -> Ints:
+    """0 or 1 for every vertex: below or above the median of its part along the part's widest axis."""
+    by_part = np.argsort(part, kind="stable")
+    starts = np.flatnonzero(np.diff(part[by_part], prepend=-1))
+    sorted_positions = positions[by_part]
+    spread = np.maximum.reduceat(sorted_positions, starts) - np.minimum.reduceat(sorted_positions, starts)
+    axis = np.repeat(spread.argmax(axis=1), np.diff(starts, append=len(part)))
+    key = sorted_positions[np.arange(len(part)), axis]
+    order = by_part[np.lexsort((key, part[by_part]))]
+    rank = np.arange(len(part)) - np.repeat(starts, np.diff(starts, append=len(part)))
+    half = np.repeat(np.diff(starts, append=len(part)) // 2, np.diff(starts, append=len(part)))
+    right = np.empty(len(part), dtype=np.intp)
+    right[order] = rank >= half
+    return right
+
+
+def factorised(matrix: csc_array) -> SuperLU:
+    """The factors of a symmetric (Hermitian) positive definite matrix whose rows are in elimination order already."""
+    return splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})

@@ -1,0 +1,96 @@
+"""Relations: transitions moved by rounding back onto the relations round the triangles."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.linalg import lsqr
+
+from orbiframe import Geometry
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+_ROUNDS = 4
+
+
+def with_relations(geometry: Geometry, transition: Ints, isometry: Floats) -> Floats:
+    """The isometries (T, 3, 3) nearest to the given ones for which every triangle closes: g0 g1 g2 = e.
+
+    transition: (H,), three for each triangle; isometries come in pairs of inverses 2k + 1, 2k + 2 after the identity.
+    Each free one is multiplied by exp(xi); the relations are linear in xi up to second order, and the least xi is
+    found by LSQR, twice or as long as the defect falls (Gauss-Newton).
+    """
+    relations = _distinct_relations(transition)
+    if not len(relations):
+        return isometry
+    best, defect = isometry, _defect(isometry, relations)
+    for _ in range(_ROUNDS):
+        trial = _corrected(geometry, relations, best)
+        new = _defect(trial, relations)
+        if not new < defect:
+            break
+        best, defect = trial, new
+    return best
+
+
+def _distinct_relations(transition: Ints) -> Ints:
+    rows = transition.reshape(-1, 3)
+    rows = np.unique(rows[(rows > 0).any(axis=1)], axis=0)
+    turns = np.stack([np.roll(rows, shift, axis=1) for shift in range(3)], axis=1)
+    keys = turns @ np.array([int(transition.max() + 1) ** 2, int(transition.max() + 1), 1])
+    first = turns[np.arange(len(rows)), keys.argmin(axis=1)]
+    return np.unique(first, axis=0)
+
+
+def _defect(isometry: Floats, relations: Ints) -> float:
+    g = isometry[relations]
+    return float(np.abs(g[:, 0] @ g[:, 1] @ g[:, 2] - np.eye(3)).max())
+
+
+def _corrected(geometry: Geometry, relations: Ints, isometry: Floats) -> Floats:
+    g = isometry[relations]
+    residual = _algebra_coordinates(g[:, 0] @ g[:, 1] @ g[:, 2] - np.eye(3))
+    suffixes = [g[:, 1] @ g[:, 2], g[:, 2], np.broadcast_to(np.eye(3), g[:, 0].shape)]
+    rows, columns, values = [], [], []
+    for slot in range(3):
+        number = relations[:, slot] - 1
+        reversed_ = (number % 2 == 1)[:, None, None]
+        carrier = np.where(reversed_, g[:, slot] @ suffixes[slot], suffixes[slot])
+        block = _adjoint(geometry, geometry.inverse(carrier)) * np.where(reversed_, -1.0, 1.0)
+        used = np.flatnonzero(number >= 0)
+        i = (3 * used)[:, None, None] + np.arange(3)[:, None] + np.zeros(3, dtype=np.intp)
+        j = (3 * (number[used] // 2))[:, None, None] + np.zeros(3, dtype=np.intp)[:, None] + np.arange(3)
+        rows.append(i.ravel())
+        columns.append(j.ravel())
+        values.append(block[used].ravel())
+    free = (len(isometry) - 1) // 2
+    shape = (3 * len(relations), 3 * free)
+    matrix = coo_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape).tocsr()
+    xi = lsqr(matrix, -residual.ravel(), atol=1e-15, btol=1e-15, iter_lim=20000)[0].reshape(-1, 3)
+    moved = geometry.nearest_isometry(isometry[1::2] @ (np.eye(3) + _algebra(geometry, xi)))
+    corrected = isometry.copy()
+    corrected[1::2], corrected[2::2] = moved, geometry.inverse(moved)
+    return corrected
+
+
+def _algebra(geometry: Geometry, xi: Floats) -> Floats:
+    """Infinitesimal isometries (..., 3, 3) from (turn, move along x1, move along x2)."""
+    k = -float(geometry.curvature)
+    turn, u, v = np.moveaxis(xi, -1, 0)
+    zero = np.zeros_like(turn)
+    rows = [[zero, k * u, k * v], [u, zero, -turn], [v, turn, zero]]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def _algebra_coordinates(matrix: Floats) -> Floats:
+    turn = (matrix[..., 2, 1] - matrix[..., 1, 2]) / 2
+    return np.stack([turn, matrix[..., 1, 0], matrix[..., 2, 0]], axis=-1)
+
+
+def _adjoint(geometry: Geometry, g: Floats) -> Floats:
+    """The matrices (..., 3, 3) of xi -> g xi g^-1 in the coordinates of `_algebra`."""
+    basis = _algebra(geometry, np.eye(3))
+    moved = g[..., None, :, :] @ basis @ geometry.inverse(g)[..., None, :, :]
+    return np.moveaxis(_algebra_coordinates(moved), -2, -1)
