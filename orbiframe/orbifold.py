@@ -65,14 +65,14 @@ class Orbifold:
     def copies(self, patches: ArrayLike, radii: ArrayLike) -> Copies:
         """The lifts of many patches at once: those of patches[i] within radii[i] have base i and stand together.
 
-        The walk goes from a copy g to its neighbours g h, h a transition, as long as the origins stay within the radius
-        plus twice the largest radius of a patch. That finds every copy if X is tiled by cells, one in each copy and
-        within twice the largest radius of its origin, and a transition joins any two cells with a common side: the
-        geodesic from origin to origin runs through a chain of such neighbours, all within that bound. In S^2 the
-        largest distance is pi, and the walk visits the whole finite group.
+        The walk goes from a copy g to its neighbours g h, h a transition, as long as their origins stay within the
+        radius plus the largest radius of a patch. That finds every copy if X is tiled by cells, one in each copy and
+        within the radius of its patch, and a transition joins any two cells with a common side: the geodesic from
+        origin to origin runs through a chain of neighbours that all come as near. (Where it runs through a corner, one
+        beside it does not.) In S^2 no distance exceeds pi, and a large radius visits the whole finite group.
         """
         base, reach = np.asarray(patches, dtype=np.intp), np.asarray(radii, dtype=np.float64)
-        limit = reach + 2 * self.atlas.radius.max()
+        limit = reach + self.atlas.radius.max()
         origin = self.geometry.origin
         levels = []
         for level in self._walk(base, limit):
