@@ -16,7 +16,7 @@ _HOMES = {
     "samples": "Samples",
     "basis": "Basis DifferentiableBasis",
     "fitter": "Fitter",
-    "topology": "SurfaceType surface_type",
+    "topology": "SurfaceType surface_type fan_labels reversed_faces",
     "spacing": "edge_graph farthest_points dijkstra_forest",
     "group": "Group",
 }

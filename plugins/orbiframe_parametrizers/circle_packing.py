@@ -28,15 +28,17 @@ class Packing:
     steps: int
 
 
-def packed(mesh: Polyhedron, curvature: int) -> Packing:
+def packed(mesh: Polyhedron, curvature: int, *, without_face: int | None = None) -> Packing:
     """The tangential circle packing of a closed triangulation in the hyperbolic (-1) or Euclidean (0) plane.
+
+    without_face: pack a sphere without that face in the Euclidean plane, its three corners having radius 1.
 
     Unknown u = ln tanh(r/2) (ln r in the plane), Newton on the convex energy whose gradient is 2 pi minus the angle
     sum; its Hessian is symmetric with positive off-diagonal weights. It exists and is unique (up to scale in the
     plane) for every triangulation of a closed surface with chi < 0 (chi = 0), orientable or not: Koebe, Andreev,
     Thurston; Bobenko and Springborn 2004. Raises MapError if 100 steps do not reach an error of 1e-11 in the angles.
     """
-    law = _Law(mesh, curvature)
+    law = _Law(mesh, curvature, without_face)
     u = law.start
     angles = law.angles(u)
     error = law.curvatures(angles)
@@ -62,10 +64,13 @@ def packed(mesh: Polyhedron, curvature: int) -> Packing:
 class _Law:
     """Angles of three mutually tangent circles and their derivatives, for one mesh and one curvature."""
 
-    def __init__(self, mesh: Polyhedron, curvature: int) -> None:
-        self.mesh = mesh
+    def __init__(self, mesh: Polyhedron, curvature: int, without_face: int | None) -> None:
         self.curvature = curvature
         self.triangles = mesh.triangles
+        self.fixed = np.array([], dtype=np.intp) if without_face is None else mesh.triangles[without_face]
+        self.packed_faces = np.ones(len(mesh.triangles))
+        if without_face is not None:
+            self.packed_faces[without_face] = 0.0
         self.count = len(mesh.vertices)
         once = mesh.representative
         self.order = dissection_order(mesh.vertices, mesh.tail[once], mesh.head[once])
@@ -90,8 +95,13 @@ class _Law:
         return 2 * np.arctan(np.sqrt(np.roll(s, -1, 1) * np.roll(s, -2, 1) / (s * whole[:, None])))
 
     def curvatures(self, angles: Floats) -> Floats:
-        """2 pi minus the angle sum at every vertex, (V,)."""
-        return 2 * np.pi - np.bincount(self.triangles.ravel(), weights=angles.ravel(), minlength=self.count)
+        """2 pi minus the angle sum at every vertex, (V,); nothing at a vertex of fixed radius."""
+        sums = np.bincount(
+            self.triangles.ravel(), weights=(angles * self.packed_faces[:, None]).ravel(), minlength=self.count
+        )
+        error = 2 * np.pi - sums
+        error[self.fixed] = 0.0
+        return error
 
     def newton_direction(self, u: Floats, angles: Floats, error: Floats) -> Floats:
         matrix = self._hessian(u, angles)
@@ -120,10 +130,15 @@ class _Law:
                 s[:, corner] * ratio[:, corner] * cosines,
             ]
         i, j = self.place[np.concatenate(rows)], self.place[np.concatenate(columns)]
-        data = np.concatenate(values)
+        data = np.concatenate(values) * np.tile(self.packed_faces, 9)
+        if len(self.fixed):
+            held = np.isin(i, self.place[self.fixed]) | np.isin(j, self.place[self.fixed])
+            data[held] = 0.0
         if self.curvature == 0:
             # Scale is free in the plane: the curvatures sum to zero, so holding one vertex changes nothing else.
-            i, j, data = np.append(i, 0), np.append(j, 0), np.append(data, np.abs(data).mean())
+            held = self.place[self.fixed] if len(self.fixed) else np.array([0])
+            i, j = np.append(i, held), np.append(j, held)
+            data = np.append(data, np.full(len(held), np.abs(data).mean()))
         return coo_array((data, (i, j)), shape=(self.count, self.count)).tocsc()
 
     def search(self, u: Floats, step: Floats, error: Floats) -> tuple[Floats, Floats, Floats, bool]:

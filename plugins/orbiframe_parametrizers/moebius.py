@@ -1,0 +1,58 @@
+"""Moebius: circles of the plane on the sphere, and the Moebius map that centres them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe import MapError
+
+Floats = NDArray[np.float64]
+
+_STEPS = 500
+_LARGEST = 2.0
+
+
+def centred_caps(z: NDArray[np.complex128], radii: Floats, weights: Floats) -> Floats:
+    """The centres (V, 3) on the unit sphere of circles z, radii (V,) of the plane, moved to have weighted mean zero.
+
+    A circle is the vector (cos rho, c) / sin rho of its spherical cap (centre c, angular radius rho) in the Lorentz
+    space R^(1,3), on which Moebius maps act as Lorentz maps. Newton steps: a small boost b moves a small cap by
+    (I - c c^T) b. For points the balanced position exists and is unique up to rotation (Springborn 2005, the minimum
+    of a convex function on H^3); big steps are cut to rapidity 2. Raises MapError without convergence.
+    """
+    caps = _caps(z, radii)
+    weights = weights / weights.sum()
+    scale = np.average(np.abs(z - np.average(z, weights=weights)), weights=weights)
+    caps = _caps((z - np.average(z, weights=weights)) / scale, radii / scale)
+    for _ in range(_STEPS):
+        centres = caps[:, 1:] / np.linalg.norm(caps[:, 1:], axis=1, keepdims=True)
+        mean = weights @ centres
+        if np.linalg.norm(mean) < 1e-13:
+            break
+        spread = np.eye(3) - np.einsum("v,vi,vj->ij", weights, centres, centres)
+        boost = -np.linalg.solve(spread, mean)
+        size = float(np.linalg.norm(boost))
+        if size < 1e-14:
+            break
+        caps = caps @ _boost(boost / size, min(size, _LARGEST)).T
+    if not np.linalg.norm(mean) < 1e-9:
+        raise MapError("the sphere could not be balanced: the mesh is too crowded for double precision; shorten thin parts")
+    return centres / np.linalg.norm(centres, axis=1, keepdims=True)
+
+
+def _caps(z: NDArray[np.complex128], radii: Floats) -> Floats:
+    """Lorentz vectors (V, 4) of the circles under the stereographic projection that sends 0 to (1, 0, 0)."""
+    # With t + n0 = 1 / r and t - n0 = (|z|^2 - r^2) / r; a product instead of the difference of squares.
+    inverse = 1 / radii
+    difference = (np.abs(z) - radii) * (np.abs(z) + radii) * inverse
+    height, axis = (inverse + difference) / 2, (inverse - difference) / 2
+    return np.stack([height, axis, z.real * inverse, z.imag * inverse], axis=1)
+
+
+def _boost(direction: Floats, rapidity: float) -> Floats:
+    boost = np.eye(4)
+    boost[0, 0] = np.cosh(rapidity)
+    boost[0, 1:] = boost[1:, 0] = np.sinh(rapidity) * direction
+    boost[1:, 1:] += (np.cosh(rapidity) - 1) * np.outer(direction, direction)
+    return boost
