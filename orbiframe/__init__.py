@@ -24,7 +24,6 @@ _HOMES = {
     "fitter": "Fitter",
     "topology": "SurfaceType surface_type fan_labels reversed_faces",
     "spacing": "edge_graph farthest_points dijkstra_forest",
-    "group": "Group",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
 

@@ -42,8 +42,9 @@ class PolygonGroup(Group):
 
     def generator(self, label: int) -> Floats:
         """The pairing h_s of the first side s whose letter is the label, and not its inverse."""
-        letters = self.word.letters
-        return self.polygon.pairings[letters.index(label) if label in letters else self.word.mate[letters.index(-label)]]
+        letters, mate = self.word.letters, self.word.mate
+        side = letters.index(label) if label in letters else mate[letters.index(-label)]
+        return np.asarray(self.polygon.pairings[side])
 
     def tiles(self, radius: float) -> Floats:
         """Every g whose tile meets the disc, found by crossing sides from tile to tile."""
