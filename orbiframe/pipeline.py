@@ -1,0 +1,186 @@
+"""Pipeline: from a mesh file to one smooth surface, in the steps of section 3.4 of the paper."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe import formats
+from orbiframe.config import Config
+from orbiframe.diagonals import triangulated
+from orbiframe.errors import FitError, MapError, TopologyError
+from orbiframe.geometry import Geometry
+from orbiframe.options import options_of
+from orbiframe.polyhedron import Polyhedron
+from orbiframe.refinement import Refinement, refine
+from orbiframe.registry import Registry
+from orbiframe.report import Deviation, report
+from orbiframe.samples import Samples
+from orbiframe.sampling import coordinate_samples
+from orbiframe.surface import OrbifoldSurface
+from orbiframe.topology import SurfaceType, oriented, require_closed_surface, without_unused_vertices
+from orbiframe.triangulation import Triangulation
+
+Progress = Callable[[str, float | None], None]
+
+GEOMETRY = {1: "s2", 0: "e2", -1: "h2"}
+PARAMETRIZER = {"s2": "sphere", "e2": "harmonic", "h2": "harmonic"}
+
+_VERTICES_PER_FUNCTION = 6
+_LEAST_VERTICES = 3000
+_OUTPUT_FACES = 40_000
+_FIRST_SIZE, _LARGEST_SIZE = 250, 16_000
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """What a fit returns: the surface, a mesh on it with normals, and the report of all steps as plain data."""
+
+    surface: OrbifoldSurface
+    output: Polyhedron
+    report: dict[str, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class _Stages:
+    """Runs the steps, tells who listens, and keeps the seconds."""
+
+    registry: Registry
+    progress: Progress
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    def __call__(self, name: str, step: Callable[..., Any], *arguments: Any) -> Any:
+        self.progress(name, None)
+        start = time.perf_counter()
+        result = step(*arguments)
+        seconds = time.perf_counter() - start
+        self.seconds[name] = self.seconds.get(name, 0.0) + seconds
+        self.registry.stage_done(name, result, seconds)
+        self.progress(name, seconds)
+        return result
+
+
+def fit(
+    mesh: Path | Polyhedron, config: Config, registry: Registry, progress: Progress = lambda stage, seconds: None
+) -> Result:
+    """The smooth surface of a closed polyhedron, given as a file or as an object.
+
+    progress: called with the name of each stage at its start (seconds None) and at its end. Raises FormatError,
+    TopologyError, MapError, FitError or ConfigError, each a sentence with a next step.
+    """
+    stages = _Stages(registry, progress)
+    config = config.checked(registry)
+    polyhedron = stages("read", _read, mesh, config, registry) if isinstance(mesh, Path) else mesh
+    surface_type = stages("topology", require_closed_surface, polyhedron)
+    unit, origin, scale = _normalised(oriented(without_unused_vertices(polyhedron)))
+    triangles = stages("triangles", triangulated, unit)
+    surface, samples, deviation = _approximated(triangles, surface_type, config, registry, stages)
+    surface = replace(surface, origin=origin, scale=scale)
+    density = config.output.refine or max(1, round(np.sqrt(_OUTPUT_FACES / triangles.face_count)))
+    output = stages("tessellation", surface.tessellate, density)
+    return Result(surface, output, report(surface, surface_type, config, samples, deviation, output, stages.seconds))
+
+
+def _approximated(
+    triangles: Polyhedron, surface_type: SurfaceType, config: Config, registry: Registry, stages: _Stages
+) -> tuple[OrbifoldSurface, Samples, Deviation]:
+    """The surface of a fixed number of functions, or of as many as the tolerance asks for."""
+    tolerance = config.output.tolerance
+    size = _size(config, registry)
+    if tolerance is None:
+        return _of_size(triangles, surface_type, config, registry, stages, size)
+    size = _FIRST_SIZE
+    known: dict[int, tuple[Refinement, Triangulation]] = {}
+    while True:
+        sized = config.with_options("basis", size=size)
+        surface, samples, deviation = _of_size(triangles, surface_type, sized, registry, stages, size, known)
+        if deviation.rms <= tolerance:
+            return surface, samples, deviation
+        if 2 * size > _LARGEST_SIZE:
+            raise FitError(
+                f"{size} functions reach an error of {deviation.rms:.2e}, not the tolerance {tolerance:.2e}; "
+                "sharp edges converge slowly: allow a larger tolerance, or set basis.size yourself"
+            )
+        size *= 2
+
+
+def _of_size(
+    triangles: Polyhedron,
+    surface_type: SurfaceType,
+    config: Config,
+    registry: Registry,
+    stages: _Stages,
+    size: int,
+    known: dict[int, tuple[Refinement, Triangulation]] | None = None,
+) -> tuple[OrbifoldSurface, Samples, Deviation]:
+    density = _working_density(triangles, size)
+    if known is None or density not in known:
+        refinement = stages("refinement", refine, triangles, density)
+        triangulation = stages("map", _mapped, refinement.polyhedron, surface_type, config, registry)
+        if known is not None:
+            known[density] = (refinement, triangulation)
+    else:
+        refinement, triangulation = known[density]
+    samples = stages("samples", coordinate_samples, triangulation)
+    basis = stages("basis", config.component("basis", registry), triangulation.orbifold, triangulation)
+    fitter = config.component("fitter", registry)()
+    coefficients = stages("fit", fitter.fit, basis, samples)
+    surface = OrbifoldSurface(triangulation, refinement, basis, coefficients, np.zeros(3), 1.0)
+    return surface, samples, stages("error", _deviation, surface, samples)
+
+
+def _read(path: Path, config: Config, registry: Registry) -> Polyhedron:
+    return formats.read(path, registry, format=None if config.mesh.open else config.mesh.name)
+
+
+def _normalised(polyhedron: Polyhedron) -> tuple[Polyhedron, NDArray[np.float64], float]:
+    """The polyhedron moved to the origin and scaled to a bounding box of diagonal 1, with where it was."""
+    low, high = polyhedron.vertices.min(axis=0), polyhedron.vertices.max(axis=0)
+    origin = low / 2 + high / 2
+    centred = polyhedron.vertices - origin
+    largest = float(np.abs(centred).max())
+    scale = largest * 2 * float(np.linalg.norm((high - low) / (2 * largest))) if largest > 0 else 0.0
+    if not (np.isfinite(scale) and scale > 0):
+        raise TopologyError("all vertices of the mesh lie in one point; a surface needs some extent")
+    return polyhedron.with_vertices(centred / scale), origin, scale
+
+
+def _size(config: Config, registry: Registry) -> int:
+    """The number of functions that the basis will have, as far as its options tell."""
+    options = {option.name: option.default for option in options_of(registry.load("basis", config.basis.name))}
+    return int(config.basis.options.get("size", options.get("size", 1000)))
+
+
+def _working_density(triangles: Polyhedron, size: int) -> int:
+    """How finely the mesh is refined for the map, so that samples and centres are dense enough for the basis."""
+    wanted = max(_LEAST_VERTICES, _VERTICES_PER_FUNCTION * size)
+    return max(1, int(np.ceil(np.sqrt(wanted / len(triangles.vertices)))))
+
+
+def _mapped(mesh: Polyhedron, surface_type: SurfaceType, config: Config, registry: Registry) -> Triangulation:
+    """The map to X/H, verified; the sign of the Euler characteristic chooses the geometry."""
+    geometry: Geometry = registry.load("geometry", GEOMETRY[int(np.sign(surface_type.euler_characteristic))])()
+    group = None
+    if not config.group.open:
+        raise MapError("the map takes its group from the mesh; remove group.method or set it to 'mesh'")
+    name = PARAMETRIZER[geometry.name] if config.map.open else config.map.name
+    triangulation: Triangulation = config.component("map", registry, name)(mesh, geometry, group)
+    if triangulation.not_positive:
+        raise MapError(
+            f"{triangulation.not_positive} of {mesh.face_count} triangles are folded in the map of '{name}'; "
+            "use map.method = 'auto'"
+        )
+    return triangulation
+
+
+def _deviation(surface: OrbifoldSurface, samples: Samples) -> Deviation:
+    """Distances between the surface and the samples, for a mesh of unit diagonal."""
+    distance = np.linalg.norm(surface.evaluate(samples.points) - samples.values, axis=1)
+    rms = float(np.sqrt(samples.weights @ distance**2 / samples.weights.sum()))
+    return Deviation(rms, float(distance.max()))

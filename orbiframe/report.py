@@ -1,0 +1,100 @@
+"""Report: what a fit did, as plain data for people and machines."""
+
+from __future__ import annotations
+
+import platform
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe.config import Config
+from orbiframe.polyhedron import Polyhedron
+from orbiframe.samples import Samples
+from orbiframe.surface import OrbifoldSurface
+from orbiframe.topology import SurfaceType, vector_areas
+from orbiframe.triangulation import Triangulation
+
+_PACKAGES = ("orbiframe", "numpy", "scipy", "numba")
+
+
+class Deviation(NamedTuple):
+    """Root mean square and largest distance of the surface from the mesh, relative to the bounding box's diagonal."""
+
+    rms: float
+    max: float
+
+
+def report(
+    surface: OrbifoldSurface,
+    surface_type: SurfaceType,
+    config: Config,
+    samples: Samples,
+    deviation: Deviation,
+    output: Polyhedron,
+    seconds: dict[str, float],
+) -> dict[str, Any]:
+    """All that a user should know of a fit, with plain numbers and strings only."""
+    triangulation = surface.triangulation
+    return {
+        "surface": {
+            "name": surface_type.name,
+            "euler_characteristic": surface_type.euler_characteristic,
+            "orientable": surface_type.orientable,
+            "genus": surface_type.genus,
+            "components": surface_type.components,
+        },
+        "geometry": triangulation.orbifold.geometry.name,
+        "group": {
+            "source": triangulation.group,
+            "patches": triangulation.orbifold.atlas.patch_count,
+            "relation_defect": triangulation.relation_defect,
+        },
+        "map": _map_report(triangulation),
+        "fit": {
+            "basis": config.basis.name,
+            "size": surface.basis.size,
+            "samples": len(samples.weights),
+            "rms": deviation.rms,
+            "max": deviation.max,
+        },
+        "output": {
+            "vertices": len(output.vertices),
+            "faces": output.face_count,
+            "euler_characteristic": len(output.vertices) - output.edge_count + output.face_count,
+        },
+        "seconds": {stage: round(spent, 4) for stage, spent in seconds.items()},
+        "versions": versions(),
+    }
+
+
+def _map_report(triangulation: Triangulation) -> dict[str, Any]:
+    weights = np.linalg.norm(vector_areas(triangulation.polyhedron), axis=1)
+    median, p95 = _weighted_quantiles(triangulation.angle_distortion, weights, [0.5, 0.95])
+    return {
+        "triangles": triangulation.polyhedron.face_count,
+        "not_positive": triangulation.not_positive,
+        "area_defect": triangulation.area_defect,
+        "angle_distortion": {"median": median, "p95": p95, "max": float(triangulation.angle_distortion.max())},
+        "weights": triangulation.weights,
+    }
+
+
+def _weighted_quantiles(
+    values: NDArray[np.float64], weights: NDArray[np.float64], levels: list[float]
+) -> list[float]:
+    order = np.argsort(values, kind="stable")
+    share = np.cumsum(weights[order]) / weights.sum()
+    return [float(values[order[min(np.searchsorted(share, level), len(order) - 1)]]) for level in levels]
+
+
+def versions() -> dict[str, str]:
+    """The versions that a result depends on."""
+    found = {"python": platform.python_version()}
+    for package in _PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            continue
+    return found
