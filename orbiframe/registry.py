@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable, Iterable
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import pluggy
 
@@ -46,7 +46,7 @@ class Registry:
         for entry in _chosen(sorted(entry_points(group=GROUP)), only):
             registry._admit(registry._free_name(entry), entry.load)
         for path in files:
-            registry._add_file(Path(path))
+            registry.add_file(Path(path))
         return registry
 
     def register(self, name: str, declarations: object) -> None:
@@ -63,6 +63,14 @@ class Registry:
         except BaseException:
             self._manager.unregister(declarations)
             raise
+
+    def add_file(self, path: Path) -> None:
+        """Add the plugin that one Python file declares. Raises PluginError where it cannot be loaded."""
+        try:
+            module = imported_file(path)
+        except (Exception, SystemExit) as error:
+            raise PluginError(f"the plugin file {path} cannot be loaded: {_described(error)}") from error
+        self.register(str(path), module)
 
     # ---- asking ---------------------------------------------------------------------------------------------------
 
@@ -86,7 +94,7 @@ class Registry:
             raise PluginError(f"{kind} '{name}' is declared by the plugins {owners}; {_restrict_hint()}")
         return found[0][0]
 
-    def load(self, kind: str, name: str) -> Callable[..., object]:
+    def load(self, kind: str, name: str) -> Callable[..., Any]:
         """What a component names, imported now.
 
         Raises UsageError for an unknown name; PluginError if the target cannot be imported, with the pip command
@@ -106,13 +114,6 @@ class Registry:
         except (Exception, SystemExit) as error:
             self.broken.append((name, str(error) if isinstance(error, PluginError) else _described(error)))
 
-    def _add_file(self, path: Path) -> None:
-        try:
-            module = imported_file(path)
-        except (Exception, SystemExit) as error:
-            raise PluginError(f"the plugin file {path} cannot be loaded: {_described(error)}") from error
-        self.register(str(path), module)
-
     def _free_name(self, entry: EntryPoint) -> str:
         taken = self._manager.has_plugin(entry.name) and entry.dist is not None
         return f"{entry.dist.name}:{entry.name}" if taken and entry.dist else entry.name
@@ -125,7 +126,7 @@ class Registry:
         return [_checked(item, name) for call in calls for item in cast("Iterable[object]", call.function())]
 
 
-def resolve(component: Component) -> Callable[..., object]:
+def resolve(component: Component) -> Callable[..., Any]:
     """The object that `component.target` names, imported now. Raises PluginError where that fails."""
     module, _, attribute = component.target.partition(":")
     title = f"{component.kind} '{component.name}'"
@@ -138,7 +139,7 @@ def resolve(component: Component) -> Callable[..., object]:
         raise PluginError(f"{title} cannot be imported from '{component.target}': {_described(error)}") from error
     if not callable(found):
         raise PluginError(f"{title}: the target '{component.target}' cannot be called; name a class or a function")
-    return found  # type: ignore[no-any-return]
+    return found
 
 
 def _root(module: str) -> str:

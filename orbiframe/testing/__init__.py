@@ -7,7 +7,7 @@ A plugin's whole test file may read
     test_wavelet = contract_tests("basis", Wavelet, params={"scale": 0.4})
 """
 
-from orbiframe.testing.kit import Laws, Verdict, contract_tests, laws_of, verdicts
+from orbiframe.testing.kit import Laws, Verdict, contract_tests, laws_of
 from orbiframe.testing.lab import Lab
 
-__all__ = ["Lab", "Laws", "Verdict", "contract_tests", "laws_of", "verdicts"]
+__all__ = ["Lab", "Laws", "Verdict", "contract_tests", "laws_of"]

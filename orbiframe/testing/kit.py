@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import importlib.util
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -15,8 +16,6 @@ from orbiframe.testing.lab import Lab
 
 Law = Callable[[Callable[..., Any], Lab], None]
 Mutation = Callable[[Callable[..., Any]], Callable[..., Any]]
-
-KINDS_WITH_LAWS = ("geometry", "group", "basis", "fitter", "reader", "writer")
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,11 +43,17 @@ class Verdict:
 
 def laws_of(kind: str) -> Laws:
     """The laws of a kind. Raises UsageError for a kind that has none."""
-    if kind not in KINDS_WITH_LAWS:
-        known = "no laws yet" if kind in KINDS else "no such kind"
-        raise UsageError(f"{known}: '{kind}'; there are laws for {', '.join(KINDS_WITH_LAWS)}")
+    if not has_laws(kind):
+        raise UsageError(
+            f"there are no laws for the kind '{kind}'; kinds with laws: {', '.join(filter(has_laws, KINDS))}"
+        )
     module = importlib.import_module(f"orbiframe.testing.{kind}_laws")
     return Laws(kind, module.LAWS, module.MUTANTS)
+
+
+def has_laws(kind: str) -> bool:
+    """Whether the kit has a module of laws for a kind."""
+    return kind in KINDS and importlib.util.find_spec(f"orbiframe.testing.{kind}_laws") is not None
 
 
 def contract_tests(
@@ -80,11 +85,6 @@ def contract_tests(
     return contract
 
 
-def verdicts(kind: str, component: Callable[..., Any], new_lab: Callable[[], Lab]) -> list[Verdict]:
-    """Every law of a kind tried on a component, each in a lab of its own, without pytest."""
-    return [_verdict(law, component, new_lab()) for law in laws_of(kind).laws]
-
-
 def bound(component: Callable[..., Any], params: Mapping[str, object]) -> Callable[..., Any]:
     """The component with its options bound; the component itself where there are none."""
     return partial(component, **params) if params else component
@@ -95,9 +95,10 @@ def statement(law: Callable[..., object]) -> str:
     return (law.__doc__ or law.__name__).strip().splitlines()[0]
 
 
-def _verdict(law: Law, component: Callable[..., Any], lab: Lab) -> Verdict:
+def tried(law: Callable[..., None], *materials: object) -> Verdict:
+    """What one law says of what it is given."""
     try:
-        law(component, lab)
+        law(*materials)
     except Exception as error:
         return Verdict(law.__name__, statement(law), f"{type(error).__name__}: {error}")
     return Verdict(law.__name__, statement(law), None)

@@ -1,0 +1,72 @@
+"""orbiframe fit: one smooth surface from a closed mesh."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from orbiframe.cli.destination import require_destination, require_folder, require_other_file
+from orbiframe.cli.progress import Progress
+from orbiframe.cli.report import json_text, summary, write_report
+from orbiframe.registry import Registry
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add = parser.add_argument
+    add("mesh", metavar="MESH", type=Path, help="a closed mesh, orientable or not, of any genus")
+    add("-o", "--output", metavar="OUT", type=Path, required=True, help="the smooth surface as a fine triangle mesh")
+    add("--config", metavar="FILE.toml", type=Path, help="components and options of the steps")
+    add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=200")
+    add("--size", metavar="N", type=int, help="number of basis functions (basis.size)")
+    add(
+        "--tolerance",
+        metavar="T",
+        type=float,
+        help="largest rms error, of the bounding-box diagonal (output.tolerance)",
+    )
+    add("--refine", metavar="K", type=int, help="K*K output triangles for each input triangle (output.refine)")
+    add("--report", metavar="FILE.json", type=Path, help="write the report")
+    add("--save", metavar="FILE", type=Path, help="write the surface itself, to be evaluated anywhere")
+    add("--json", action="store_true", help="print the report as JSON instead of the summary")
+    add("--quiet", action="store_true", help="print nothing but errors")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace, registry: Registry) -> int:
+    """Fit, write what was asked for, and say what came out."""
+    from orbiframe import formats, pipeline
+    from orbiframe.config import Config
+
+    config = Config.load(args.config, overrides(args))
+    for path in config.plugins:
+        registry.add_file(path)
+    config.checked(registry)
+    _require_destinations(args, registry)
+    progress = Progress(quiet=args.quiet)
+    result = pipeline.fit(args.mesh, config, registry, progress)
+    progress("writing")
+    formats.write(args.output, result.output, registry)
+    if args.save:
+        result.surface.save(args.save)
+    if args.report:
+        write_report(args.report, result.report)
+    progress.done()
+    if not args.quiet:
+        print(json_text(result.report) if args.json else summary(result.report))
+    return 0
+
+
+def overrides(args: argparse.Namespace) -> list[str]:
+    """The options of the command line as TABLE.KEY=VALUE, those with a name of their own last."""
+    named = {"basis.size": args.size, "output.tolerance": args.tolerance, "output.refine": args.refine}
+    return [*args.set, *(f"{key}={value}" for key, value in named.items() if value is not None)]
+
+
+def _require_destinations(args: argparse.Namespace, registry: Registry) -> None:
+    require_destination(args.output, registry)
+    require_other_file(args.output, args.mesh)
+    for path in (args.report, args.save):
+        if path is not None:
+            require_folder(path)
+            require_other_file(path, args.mesh)

@@ -1,0 +1,113 @@
+"""The command line: finds the command, runs it, and turns errors into one sentence and an exit status."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import traceback
+import warnings
+from collections.abc import Sequence
+from importlib.metadata import version
+
+from orbiframe.cli import plugin as commands
+from orbiframe.errors import OrbiframeError, UsageError
+from orbiframe.registry import Registry
+
+INTERRUPTED = 130
+EPILOG = "exit status: 0 done; 1 the data or the mathematics do not allow it; 2 wrong usage or configuration"
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; returns the exit status.
+
+    0: done; 1: the data or the mathematics do not allow it; 2: wrong usage or configuration; 130: interrupted. Errors
+    are one sentence on the standard error stream, with a traceback only after `--debug`.
+    """
+    arguments = sys.argv[1:] if argv is None else list(argv)
+    with warnings.catch_warnings():
+        debug = "--debug" in arguments
+        _show_warnings_of_users(debug)
+        try:
+            return _run(arguments)
+        except SystemExit as stop:
+            return stop.code if isinstance(stop.code, int) else 0
+        except BrokenPipeError:
+            return _close_quietly()
+        except (Exception, KeyboardInterrupt) as error:
+            return _report(error, debug)
+
+
+def _run(arguments: list[str]) -> int:
+    registry = Registry.discover()
+    registry.register("commands", commands)
+    chosen = next((word for word in arguments if not word.startswith("-")), None)
+    parser = _parser(registry, chosen)
+    if chosen is not None:
+        registry.component("command", chosen)
+    args = parser.parse_args(arguments)
+    if chosen is None:
+        parser.print_help()
+        return 0
+    status: int = args.run(args, registry)
+    sys.stdout.flush()
+    return status
+
+
+def _parser(registry: Registry, chosen: str | None) -> argparse.ArgumentParser:
+    """The parser of all commands; only the chosen one is imported and has its arguments."""
+    parser = argparse.ArgumentParser("orbiframe", description=_description(), epilog=EPILOG)
+    parser.add_argument("--version", action="version", version=f"orbiframe {version('orbiframe')}")
+    _add_debug(parser, False)
+    subparsers = parser.add_subparsers(metavar="COMMAND", title="commands")
+    for component in registry.components("command"):
+        sub = subparsers.add_parser(component.name, help=component.summary, description=component.summary)
+        _add_debug(sub, argparse.SUPPRESS)
+        if component.name == chosen:
+            registry.load("command", component.name)(sub)
+    return parser
+
+
+def _description() -> str:
+    return "One truly smooth surface from any closed polyhedron: spline orbifolds for every genus, orientable or not."
+
+
+def _add_debug(parser: argparse.ArgumentParser, default: object) -> None:
+    parser.add_argument("--debug", action="store_true", default=default, help="show the traceback of an error")
+
+
+def _show_warnings_of_users(debug: bool) -> None:
+    """Warnings that our own code gives to users are shown as one line; those of libraries only after --debug."""
+    if not debug:
+        warnings.simplefilter("ignore")
+        warnings.filterwarnings("always", category=UserWarning)
+        warnings.showwarning = lambda message, *_, **__: print(f"orbiframe: warning: {message}", file=sys.stderr)
+
+
+def _report(error: BaseException, debug: bool) -> int:
+    if debug:
+        traceback.print_exception(error)
+    print(f"orbiframe: {_sentence(error)}", file=sys.stderr)
+    if isinstance(error, KeyboardInterrupt):
+        return INTERRUPTED
+    return 2 if isinstance(error, UsageError) else 1
+
+
+def _sentence(error: BaseException) -> str:
+    if isinstance(error, KeyboardInterrupt):
+        return "interrupted"
+    if isinstance(error, MemoryError):
+        return "not enough memory; take a smaller mesh, basis or refinement"
+    if isinstance(error, OrbiframeError | OSError):
+        return str(error)
+    return f"internal error, {type(error).__name__}: {error}; run again with --debug for the traceback, and report it"
+
+
+def _close_quietly() -> int:
+    # The reader of our output has gone (as in `orbiframe plugins | head`); nothing more can or need be said.
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

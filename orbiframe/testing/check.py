@@ -1,0 +1,47 @@
+"""Check: an installed component tried on all its laws, without pytest."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from orbiframe.plugin import Component
+from orbiframe.registry import Registry, resolve
+from orbiframe.testing import component_laws
+from orbiframe.testing.kit import Verdict, has_laws, laws_of, tried
+from orbiframe.testing.lab import Lab
+
+
+def check(component: Component, registry: Registry) -> list[Verdict]:
+    """What every law says of a component: the laws of all components, and those of its kind for each file suffix."""
+    found = [tried(law, component) for law in component_laws.LAWS]
+    if has_laws(component.kind) and found[0].error is None:
+        found += [verdict for equipment in equipments(component, registry) for verdict in _on(component, equipment)]
+    return found
+
+
+def equipments(component: Component, registry: Registry) -> Iterator[dict[str, Any]]:
+    """What a lab for a component needs, once for every suffix of a reader or writer."""
+    if component.kind not in ("reader", "writer"):
+        yield {}
+    for suffix in component.suffixes:
+        yield {"suffix": suffix, "counterpart": counterpart(component, suffix, registry)}
+
+
+def counterpart(component: Component, suffix: str, registry: Registry) -> Callable[..., Any] | None:
+    """The writer for a reader and the reader for a writer; the one of the same name before others for the suffix."""
+    kind = "writer" if component.kind == "reader" else "reader"
+    others = [other for other in registry.components(kind) if suffix in other.suffixes]
+    others.sort(key=lambda other: other.name != component.name)
+    return resolve(others[0]) if others else None
+
+
+def _on(component: Component, equipment: dict[str, Any]) -> Iterator[Verdict]:
+    for law in laws_of(component.kind).laws:
+        with TemporaryDirectory() as folder:
+            verdict = tried(law, resolve(component), Lab(Path(folder), **equipment))
+        yield Verdict(
+            " ".join([verdict.law, *filter(None, [equipment.get("suffix")])]), verdict.statement, verdict.error
+        )
