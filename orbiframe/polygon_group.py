@@ -41,10 +41,8 @@ class PolygonGroup(Group):
         return Atlas(self.geometry, np.array([self.polygon.circumradius]), patch, patch.copy(), inverse, isometry)
 
     def generator(self, label: int) -> Floats:
-        """The pairing h_s of the first side s whose letter is the label, and not its inverse."""
-        letters, mate = self.word.letters, self.word.mate
-        side = letters.index(label) if label in letters else mate[letters.index(-label)]
-        return np.asarray(self.polygon.pairings[side])
+        """The pairing of `word.generator_side(label)`."""
+        return np.asarray(self.polygon.pairings[self.word.generator_side(label)])
 
     def tiles(self, radius: float) -> Floats:
         """Every g whose tile meets the disc, found by crossing sides from tile to tile."""

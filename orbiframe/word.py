@@ -77,6 +77,22 @@ class Word:
         """
         return tuple(tuple(side for _, side in cycle) for cycle in self._cycles)
 
+    def generator_side(self, label: int) -> int:
+        """The side whose pairing a label stands for: the first one that carries the label and not its inverse."""
+        return self.letters.index(label) if label in self.letters else self.mate[self.letters.index(-label)]
+
+    @property
+    def letter_relations(self) -> tuple[tuple[int, ...], ...]:
+        """`relations` written in generators and their inverses: for `abAB` it is a B A b (up to rotation).
+
+        The text of section 2.5 says a b a' b' ... = e; with h_s F the neighbour across s it is a b' a' b ... = e.
+        """
+        return tuple(tuple(map(self._letter_of, relation)) for relation in self.relations)
+
+    def _letter_of(self, side: int) -> int:
+        label = abs(self.letters[side])
+        return label if side == self.generator_side(label) else -label
+
     @property
     def euler_characteristic(self) -> int:
         """Vertices minus edges plus the one face."""

@@ -39,16 +39,16 @@ class E2(Geometry):
 
     def chord(self, x: ArrayLike, y: ArrayLike) -> Floats:
         """y - x."""
-        return np.asarray(y, dtype=float) - np.asarray(x, dtype=float)
+        return np.asarray(np.subtract(y, x, dtype=float))
 
     def versine(self, x: ArrayLike, y: ArrayLike) -> Floats:
         """d^2 / 2."""
         apart = self.chord(x, y)
-        return self.inner(apart, apart) / 2
+        return np.asarray(self.inner(apart, apart) / 2)
 
     def distance(self, x: ArrayLike, y: ArrayLike) -> Floats:
         """|x - y|."""
-        return np.hypot(*np.moveaxis(self.chord(x, y)[..., 1:], -1, 0))
+        return np.asarray(np.hypot(*np.moveaxis(self.chord(x, y)[..., 1:], -1, 0)))
 
     def exp(self, x: ArrayLike, v: ArrayLike) -> Floats:
         """x + v."""
@@ -70,7 +70,7 @@ class E2(Geometry):
 
     def point_defect(self, x: ArrayLike) -> Floats:
         """|x0 - 1|."""
-        return np.abs(np.asarray(x, dtype=float)[..., 0] - 1)
+        return np.asarray(np.abs(np.asarray(x, dtype=float)[..., 0] - 1))
 
     def isometry_defect(self, g: ArrayLike) -> Floats:
         """Largest entry of R^T R - 1 for the linear part R, and of the first row minus (1, 0, 0)."""

@@ -48,7 +48,7 @@ class H2(Geometry):
         base, target = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
         apart, along = target - base, target + base
         apart[..., 0] = np.sum(apart[..., 1:] * along[..., 1:], axis=-1) / along[..., 0]
-        return apart
+        return np.asarray(apart)
 
     def versine(self, x: ArrayLike, y: ArrayLike) -> Floats:
         """cosh d - 1 as a sum of positive terms, relative error about eps e^D at distance D from the origin.
@@ -88,7 +88,7 @@ class H2(Geometry):
 
     def turn(self, x: ArrayLike, v: ArrayLike) -> Floats:
         """The Lorentz cross product: x cross v with the first entry negated."""
-        return np.cross(np.asarray(x, dtype=float), np.asarray(v, dtype=float)) * -_FORM
+        return np.asarray(np.cross(np.asarray(x, dtype=float), np.asarray(v, dtype=float)) * -_FORM)
 
     def from_polar(self, radius: ArrayLike, angle: ArrayLike) -> Floats:
         """(cosh r, sinh r cos a, sinh r sin a)."""
@@ -98,7 +98,7 @@ class H2(Geometry):
     def point_defect(self, x: ArrayLike) -> Floats:
         """|x0 - sqrt(1 + x1^2 + x2^2)|; the lower sheet has a defect of at least 2."""
         points = np.asarray(x, dtype=float)
-        return np.abs(points[..., 0] - np.sqrt(1 + points[..., 1] ** 2 + points[..., 2] ** 2))
+        return np.asarray(np.abs(points[..., 0] - np.sqrt(1 + points[..., 1] ** 2 + points[..., 2] ** 2)))
 
     def isometry_defect(self, g: ArrayLike) -> Floats:
         """Largest entry of g^T J g - J; at least 2 where g exchanges the two sheets."""
@@ -122,7 +122,7 @@ class H2(Geometry):
 
     def inverse(self, g: ArrayLike) -> Floats:
         """J g^T J."""
-        return _FORM[:, None] * np.swapaxes(np.asarray(g, dtype=float), -1, -2) * _FORM
+        return np.asarray(_FORM[:, None] * np.swapaxes(np.asarray(g, dtype=float), -1, -2) * _FORM)
 
 
 def _height(x: Floats) -> Floats:

@@ -39,7 +39,7 @@ class S2(Geometry):
 
     def chord(self, x: ArrayLike, y: ArrayLike) -> Floats:
         """y - x."""
-        return np.asarray(y, dtype=float) - np.asarray(x, dtype=float)
+        return np.asarray(np.subtract(y, x, dtype=float))
 
     def versine(self, x: ArrayLike, y: ArrayLike) -> Floats:
         """1 - cos d = |x - y|^2 / 2."""
@@ -68,7 +68,7 @@ class S2(Geometry):
 
     def turn(self, x: ArrayLike, v: ArrayLike) -> Floats:
         """x cross v."""
-        return np.cross(np.asarray(x, dtype=float), np.asarray(v, dtype=float))
+        return np.asarray(np.cross(np.asarray(x, dtype=float), np.asarray(v, dtype=float)))
 
     def from_polar(self, radius: ArrayLike, angle: ArrayLike) -> Floats:
         """(cos r, sin r cos a, sin r sin a)."""
@@ -77,7 +77,7 @@ class S2(Geometry):
 
     def point_defect(self, x: ArrayLike) -> Floats:
         """| |x|^2 - 1 |."""
-        return np.abs(np.sum(np.asarray(x, dtype=float) ** 2, axis=-1) - 1)
+        return np.asarray(np.abs(np.sum(np.asarray(x, dtype=float) ** 2, axis=-1) - 1))
 
     def isometry_defect(self, g: ArrayLike) -> Floats:
         """Largest entry of g^T g - 1."""

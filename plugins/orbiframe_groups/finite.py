@@ -36,11 +36,11 @@ class FiniteGroup(Group):
     def generator(self, label: int) -> Floats:
         """The antipodal map for a letter that occurs twice with one sign, else the identity."""
         twice = self.word.letters.count(label) == 2 or self.word.letters.count(-label) == 2
-        return self._elements[-1 if twice else 0]
+        return np.asarray(self._elements[-1 if twice else 0])
 
     def tiles(self, radius: float) -> Floats:
         """The identity, and from the radius pi/2 on the antipodal map."""
-        return self._elements if radius >= np.pi / 2 else self._elements[:1]
+        return np.asarray(self._elements[: 2 if radius >= np.pi / 2 else 1])
 
     def reduce(self, x: ArrayLike) -> tuple[Floats, Floats]:
         """x or -x; on the boundary of the hemisphere the one whose first coordinate other than zero is positive."""
