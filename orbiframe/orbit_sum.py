@@ -142,7 +142,7 @@ def _pairs_of_block(orbifold: Orbifold, images: _Images, rows: Ints, x: Floats, 
 def _curve_order(x: Floats) -> Ints:
     """Points sorted along a space-filling curve (Morton's) in (x1, x2), one half of S^2 after the other."""
     plane = x[:, 1:] - x[:, 1:].min(axis=0)
-    cell = (plane * ((2**31 - 1) / max(plane.max(), 1e-300))).astype(np.uint64)
+    cell = (plane * ((2**31 - 1) / (plane.max() or 1.0))).astype(np.uint64)
     for shift, mask in ((16, 0x0000FFFF0000FFFF), (8, 0x00FF00FF00FF00FF), (4, 0x0F0F0F0F0F0F0F0F)):
         cell = (cell | cell << np.uint64(shift)) & np.uint64(mask)
     for shift, mask in ((2, 0x3333333333333333), (1, 0x5555555555555555)):
