@@ -37,11 +37,11 @@ class Step:
 class Output:
     """What to make of the surface.
 
-    refine: every triangle of the mesh becomes refine^2 triangles; tolerance: largest root mean square error allowed,
-    relative to the diagonal of the bounding box, None for a basis of fixed size.
+    refine: every triangle of the mesh becomes refine^2 triangles, None for as many as a fine picture needs; tolerance:
+    largest root mean square error allowed, relative to the diagonal of the bounding box, None for a fixed size.
     """
 
-    refine: Annotated[int, Ge(1)] = 4
+    refine: Annotated[int, Ge(1)] | None = None
     tolerance: Annotated[float, Gt(0)] | None = None
 
 

@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable, Iterable
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, TypeGuard, cast
 
 import pluggy
 
@@ -131,15 +131,20 @@ def resolve(component: Component) -> Callable[..., Any]:
     module, _, attribute = component.target.partition(":")
     title = f"{component.kind} '{component.name}'"
     try:
-        found = getattr(importlib.import_module(module), attribute)
+        found: Callable[..., Any] = getattr(importlib.import_module(module), attribute)
     except Exception as error:
-        if isinstance(error, ModuleNotFoundError) and error.name and _root(error.name) != _root(module):
+        if isinstance(error, ModuleNotFoundError) and _is_foreign(error.name, module):
             hint = f'which is not installed: pip install "{component.extra or _root(error.name)}"'
             raise PluginError(f"{title} needs the package '{_root(error.name)}', {hint}") from error
         raise PluginError(f"{title} cannot be imported from '{component.target}': {_described(error)}") from error
     if not callable(found):
         raise PluginError(f"{title}: the target '{component.target}' cannot be called; name a class or a function")
     return found
+
+
+def _is_foreign(missing: str | None, module: str) -> TypeGuard[str]:
+    """Whether a missing module is a package to install, not a part of the component's own package."""
+    return bool(missing) and (missing == _root(module) or _root(str(missing)) != _root(module))
 
 
 def _root(module: str) -> str:

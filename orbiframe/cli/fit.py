@@ -43,15 +43,12 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
         registry.add_file(path)
     config.checked(registry)
     _require_destinations(args, registry)
-    progress = Progress(quiet=args.quiet)
-    result = pipeline.fit(args.mesh, config, registry, progress)
-    progress("writing")
+    result = pipeline.fit(args.mesh, config, registry, Progress(quiet=args.quiet))
     formats.write(args.output, result.output, registry)
     if args.save:
         result.surface.save(args.save)
     if args.report:
         write_report(args.report, result.report)
-    progress.done()
     if not args.quiet:
         print(json_text(result.report) if args.json else summary(result.report))
     return 0

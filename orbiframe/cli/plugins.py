@@ -40,6 +40,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
 def run_check(args: argparse.Namespace, registry: Registry) -> int:
     """Try a component on its laws; the status is 1 if one does not hold."""
     from orbiframe.testing.check import check
+    from orbiframe.testing.kit import has_laws
 
     component = find(args.name, registry)
     found = check(component, registry)
@@ -47,6 +48,8 @@ def run_check(args: argparse.Namespace, registry: Registry) -> int:
         print(f"{'holds' if verdict.error is None else 'FAILS'}  {verdict.law}: {verdict.error or verdict.statement}")
     held = sum(verdict.error is None for verdict in found)
     print(f"{component.kind} '{component.name}': {held} of {len(found)} laws held")
+    if not has_laws(component.kind):
+        print(f"beyond these, there are no laws for the kind '{component.kind}'")
     return 0 if held == len(found) else 1
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -24,8 +25,8 @@ def write_report(path: Path, report: Mapping[str, Any]) -> None:
 
 
 def json_text(report: Mapping[str, Any]) -> str:
-    """A report as JSON; numbers of numpy become plain ones."""
-    return json.dumps(report, indent=2, default=_plain, allow_nan=False)
+    """A report as JSON; numbers that are not finite become null, which JSON has."""
+    return json.dumps(_plain(report), indent=2, allow_nan=False)
 
 
 def summary(report: Mapping[str, Any]) -> str:
@@ -35,7 +36,7 @@ def summary(report: Mapping[str, Any]) -> str:
 
 def _lines(report: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     surface, group, mapped, fit, out = (report[key] for key in ("surface", "group", "map", "fit", "output"))
-    yield "surface", f"{_surface_name(surface)} (Euler characteristic {surface['euler_characteristic']})"
+    yield "surface", f"{surface['name']} (Euler characteristic {surface['euler_characteristic']})"
     yield "geometry", str(report["geometry"])
     patches = _counted(group["patches"], "patch", "patches")
     yield "group", f"{group['source']}, {patches}, relation defect {group['relation_defect']:.1e}"
@@ -52,21 +53,16 @@ def _lines(report: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield "seconds", f"{sum(report['seconds'].values()):.1f} ({stages})"
 
 
-def _surface_name(surface: Mapping[str, Any]) -> str:
-    from orbiframe.topology import SurfaceType
-
-    keys = ("euler_characteristic", "orientable", "components", "genus")
-    return SurfaceType(closed=True, **{key: surface[key] for key in keys}).name
-
-
 def _counted(count: int, one: str, many: str) -> str:
     return f"{count} {one if count == 1 else many}"
 
 
 def _plain(value: Any) -> Any:
-    if hasattr(value, "tolist"):
-        return value.tolist()
-    raise TypeError(f"a report cannot hold {type(value).__name__}")
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _umask() -> int:

@@ -16,8 +16,11 @@ from orbiframe.testing.lab import Lab
 
 def check(component: Component, registry: Registry) -> list[Verdict]:
     """What every law says of a component: the laws of all components, and those of its kind for each file suffix."""
+    imported = tried(component_laws.target_resolves, component)
+    if imported.error is not None:
+        return [imported]
     found = [tried(law, component) for law in component_laws.LAWS]
-    if has_laws(component.kind) and found[0].error is None:
+    if has_laws(component.kind):
         found += [verdict for equipment in equipments(component, registry) for verdict in _on(component, equipment)]
     return found
 

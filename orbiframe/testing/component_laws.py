@@ -13,7 +13,7 @@ from orbiframe.registry import resolve
 POSITIONAL = {
     "geometry": 0,
     "group": 2,
-    "parametrizer": 2,
+    "parametrizer": 3,
     "basis": 2,
     "fitter": 0,
     "reader": 1,
