@@ -73,13 +73,14 @@ def _spherical_motion(g: Floats, inverse: Floats, parity: int, small: float, spi
 
 
 def _hyperbolic_motion(g: Floats, inverse: Floats, parity: int, small: float, spin: Floats, cosine: float) -> Motion:
-    square = float(spin[0] ** 2 - spin[1] ** 2 - spin[2] ** 2)
-    if parity > 0 and cosine < 1 - small:
+    square, size = _form(spin), float(np.abs(spin).max())
+    # spin is known up to `small`, hence its square up to small times size.
+    if parity > 0 and cosine > 0 and abs(square) <= 4 * small * size:
+        return Motion("parabolic", point=spin / spin[0])
+    if parity > 0 and (cosine < 0 or square > 0):
         point = spin if cosine > 0 else _fixed_vector(g, inverse, cosine)
         point = np.copysign(1.0, point[0]) * point / np.sqrt(_form(point))
         return Motion("rotation", float(np.arctan2(_dot(spin, point), cosine)), point=point)
-    if parity > 0 and abs(square) <= small * max(1.0, float(np.abs(spin).max()) ** 2) and cosine <= 1 + small:
-        return Motion("parabolic", point=spin / spin[0])
     pole = spin if parity > 0 else _fixed_vector(g, inverse, cosine)
     pole = pole / np.sqrt(-_form(pole))
     line, length = pole * [1.0, -1.0, -1.0], float(np.arcsinh(np.sqrt(max(-square, 0.0))))

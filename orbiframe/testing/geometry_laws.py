@@ -14,6 +14,9 @@ from orbiframe.testing.lab import Lab
 Floats = NDArray[np.float64]
 Component = Callable[[], Geometry]
 
+# sin, the identity, sinh by curvature; written out because they are the anchor outside of the component.
+_SINE: dict[int, Callable[[Floats], Floats]] = {1: np.sin, 0: np.asarray, -1: np.sinh}
+
 # Points are tried up to this distance from the origin; rounding errors grow like cosh^2 of it.
 _REACH = 1.4
 _TOLERANCE = 1e-12
@@ -148,7 +151,7 @@ LAWS: tuple[Callable[[Component, Lab], None], ...] = (
 )
 
 
-# ---- mutants ----------------------------------------------------------------------------------------------------------
+# ---- mutants --------------------------------------------------------------------------------------------------------
 
 
 def _altered(**methods: Callable[..., Any]) -> Callable[[Component], Component]:
@@ -186,7 +189,7 @@ MUTANTS: dict[str, Callable[[Component], Component]] = {
 }
 
 
-# ---- things to try ----------------------------------------------------------------------------------------------------
+# ---- things to try --------------------------------------------------------------------------------------------------
 
 
 def _points(geometry: Geometry, lab: Lab, count: int) -> Floats:
@@ -195,11 +198,11 @@ def _points(geometry: Geometry, lab: Lab, count: int) -> Floats:
 
 def _directions(geometry: Geometry, lab: Lab, x: Floats) -> Floats:
     angle = lab.rng.uniform(-np.pi, np.pi, x.shape[:-1])
-    return np.einsum("...ij,...j->...i", geometry.frame(x), np.stack([np.cos(angle), np.sin(angle)], axis=-1))
+    return np.asarray(np.sum(geometry.frame(x) * np.stack([np.cos(angle), np.sin(angle)], -1)[..., None, :], axis=-1))
 
 
 def _tangents(geometry: Geometry, lab: Lab, x: Floats) -> Floats:
-    return lab.rng.uniform(0.01, _REACH, (*x.shape[:-1], 1)) * _directions(geometry, lab, x)
+    return np.asarray(lab.rng.uniform(0.01, _REACH, (*x.shape[:-1], 1)) * _directions(geometry, lab, x))
 
 
 def _isometries(geometry: Geometry, lab: Lab, count: int) -> Floats:
@@ -209,8 +212,7 @@ def _isometries(geometry: Geometry, lab: Lab, count: int) -> Floats:
 
 
 def _sine(geometry: Geometry, x: Floats) -> Floats:
-    """sin, the identity or sinh; written out here because it is the anchor outside of the component."""
-    return {1: np.sin, 0: np.asarray, -1: np.sinh}[geometry.curvature](x)
+    return _SINE[geometry.curvature](x)
 
 
 def _heron_sum(geometry: Geometry, x: Floats, y: Floats, z: Floats, n: int) -> float:

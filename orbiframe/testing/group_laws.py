@@ -20,6 +20,10 @@ from orbiframe.word import Word
 Floats = NDArray[np.float64]
 Component = Callable[[Geometry, Word], Group]
 
+# sin, the identity, sinh by curvature, and their inverses.
+_SINE: dict[int, Callable[[Any], Any]] = {1: np.sin, 0: np.asarray, -1: np.sinh}
+_ARCSINE: dict[int, Callable[[Any], Any]] = {1: np.arcsin, 0: np.asarray, -1: np.arcsinh}
+
 # A group component may decline a surface with GeometryError; it is tried on those that it takes.
 CASES = (
     ("s2", "aA"),
@@ -34,7 +38,7 @@ CASES = (
 )
 
 
-def pairings_are_isometries(component: Component, lab: Lab) -> None:
+def pairings_are_isometries(component: Component, _: Lab) -> None:
     """The transitions of the atlas preserve X and its metric, and the first is the identity."""
     for group in _groups(component):
         atlas = group.atlas()
@@ -43,7 +47,7 @@ def pairings_are_isometries(component: Component, lab: Lab) -> None:
         _within(group, group.geometry.isometry_defect(group.tiles(_radius(group))))
 
 
-def twins_are_inverse(component: Component, lab: Lab) -> None:
+def twins_are_inverse(component: Component, _: Lab) -> None:
     """The pairing of a side and that of its mate are inverse to each other."""
     for group in _groups(component):
         atlas = group.atlas()
@@ -51,14 +55,14 @@ def twins_are_inverse(component: Component, lab: Lab) -> None:
         _within(group, atlas.isometry @ atlas.isometry[atlas.inverse] - np.eye(3))
 
 
-def cycle_relations_hold(component: Component, lab: Lab) -> None:
+def cycle_relations_hold(component: Component, _: Lab) -> None:
     """The product of the pairings of the sides that one crosses round a vertex is the identity."""
     for group in _groups(component):
         for relation in group.word.letter_relations:
             _within(group, group.element(relation) - np.eye(3))
 
 
-def orientation_matches_the_word(component: Component, lab: Lab) -> None:
+def orientation_matches_the_word(component: Component, _: Lab) -> None:
     """A generator reverses orientation if and only if its letter occurs twice with the same sign."""
     for group in _groups(component):
         for side, letter in enumerate(group.word.letters):
@@ -66,14 +70,14 @@ def orientation_matches_the_word(component: Component, lab: Lab) -> None:
             assert parity == (-1 if group.word.reverses(side) else 1), f"letter {abs(letter)} has parity {parity}"
 
 
-def area_obeys_gauss_bonnet(component: Component, lab: Lab) -> None:
+def area_obeys_gauss_bonnet(component: Component, _: Lab) -> None:
     """The area is positive, and curvature times area is 2 pi times the Euler characteristic of the word."""
     for group in _groups(component):
         assert group.area > 0, f"area {group.area}"
         _within(group, group.geometry.curvature * group.area - 2 * np.pi * group.word.euler_characteristic)
 
 
-def elements_have_no_fixed_point(component: Component, lab: Lab) -> None:
+def elements_have_no_fixed_point(component: Component, _: Lab) -> None:
     """Every element other than the identity moves every point: X/H is a surface without singular points."""
     free = ("translation", "glide", "rotary reflection")
     for group in _groups(component):
@@ -117,7 +121,7 @@ LAWS: tuple[Callable[[Component, Lab], None], ...] = (
 )
 
 
-# ---- mutants ----------------------------------------------------------------------------------------------------------
+# ---- mutants --------------------------------------------------------------------------------------------------------
 
 
 class _Altered(Group):
@@ -174,13 +178,13 @@ MUTANTS: dict[str, Callable[[Component], Component]] = {
         tiles=lambda g, radius: np.concatenate([g.tiles(radius), g.geometry.rotation(2 * np.pi / 3)[None]])
     ),
     "reduction_is_idempotent_and_invariant": _altered(
-        reduce=lambda g, x: tuple(np.array(part) for part in (x, np.broadcast_to(np.eye(3), (*np.shape(x), 3))))
+        reduce=lambda _, x: tuple(np.array(part) for part in (x, np.broadcast_to(np.eye(3), (*np.shape(x), 3))))
     ),
     "tiles_cover_a_disc_once": _altered(tiles=lambda g, radius: np.repeat(g.tiles(radius), 2, axis=0)),
 }
 
 
-# ---- things to try ----------------------------------------------------------------------------------------------------
+# ---- things to try --------------------------------------------------------------------------------------------------
 
 
 @cache
@@ -206,17 +210,13 @@ def _radius(group: Group) -> float:
 
 
 def _disc_area(group: Group) -> float:
-    radius, curvature = _radius(group), group.geometry.curvature
-    half = {1: np.sin, 0: np.asarray, -1: np.sinh}[curvature](radius / 2)
-    return float(4 * np.pi * half**2)
+    return float(4 * np.pi * _SINE[group.geometry.curvature](_radius(group) / 2) ** 2)
 
 
 def _points(group: Group, lab: Lab, count: int) -> Floats:
     """Points that are uniformly spread over the disc: the area within r grows like S(r/2)^2."""
-    sine, inverse = {1: (np.sin, np.arcsin), 0: (np.asarray, np.asarray), -1: (np.sinh, np.arcsinh)}[
-        group.geometry.curvature
-    ]
-    half = inverse(sine(_radius(group) / 2) * np.sqrt(lab.rng.uniform(0, 1, count)))
+    sine, arcsine = _SINE[group.geometry.curvature], _ARCSINE[group.geometry.curvature]
+    half = arcsine(sine(_radius(group) / 2) * np.sqrt(lab.rng.uniform(0, 1, count)))
     return group.geometry.from_polar(2 * half, lab.rng.uniform(-np.pi, np.pi, count))
 
 

@@ -53,16 +53,17 @@ class H2(Geometry):
     def versine(self, x: ArrayLike, y: ArrayLike) -> Floats:
         """cosh d - 1 as a sum of positive terms, relative error about eps e^D at distance D from the origin.
 
-        With v = y - x and s = x + y in the plane (x1, x2): (4 |v|^2 + (v cross s)^2) / (4 (1 + x0 y0 + x . y)), and
-        where x . y < 0, a + b + a b - x . y with a = x0 - 1, b = y0 - 1.
+        With v = y - x in the plane (x1, x2): (|v|^2 + (x cross v)^2) / (1 + x0 y0 + x . y), and where x . y < 0,
+        a + b + a b - x . y with a = x0 - 1, b = y0 - 1. For the cross product x is the point nearer to the origin.
         """
         p, q = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
-        apart, along = q[..., 1:] - p[..., 1:], q[..., 1:] + p[..., 1:]
-        dot = np.sum(p[..., 1:] * q[..., 1:], axis=-1)
-        cross = apart[..., 0] * along[..., 1] - apart[..., 1] * along[..., 0]
-        near = (4 * np.sum(apart**2, axis=-1) + cross**2) / (4 * (1 + p[..., 0] * q[..., 0] + np.maximum(dot, 0.0)))
         a, b = _height(p), _height(q)
-        return np.asarray(np.where(dot >= 0, near, a + b + a * b - dot))
+        apart = q[..., 1:] - p[..., 1:]
+        near = np.where((a <= b)[..., None], p[..., 1:], q[..., 1:])
+        cross = near[..., 0] * apart[..., 1] - near[..., 1] * apart[..., 0]
+        dot = np.sum(p[..., 1:] * q[..., 1:], axis=-1)
+        close = (np.sum(apart**2, axis=-1) + cross**2) / (1 + p[..., 0] * q[..., 0] + np.maximum(dot, 0.0))
+        return np.asarray(np.where(dot >= 0, close, a + b + a * b - dot))
 
     def distance(self, x: ArrayLike, y: ArrayLike) -> Floats:
         """2 asinh(sqrt((cosh d - 1) / 2))."""

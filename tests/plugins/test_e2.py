@@ -1,6 +1,7 @@
 """The contract of E2; what is special to it stands in tests/kernel/test_geometry.py."""
 
-from orbiframe.testing import contract_tests
 from orbiframe_geometries.e2 import E2
+
+from orbiframe.testing import contract_tests
 
 test_e2 = contract_tests("geometry", E2)

@@ -1,9 +1,9 @@
 import pytest
-
-from orbiframe.testing import Lab, laws_of
 from orbiframe_geometries.e2 import E2
 from orbiframe_geometries.h2 import H2
 from orbiframe_geometries.s2 import S2
+
+from orbiframe.testing import Lab, laws_of
 
 GEOMETRY = laws_of("geometry")
 

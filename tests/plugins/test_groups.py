@@ -1,9 +1,9 @@
 import pytest
-
-from orbiframe.testing import Lab, contract_tests, laws_of
 from orbiframe_groups.finite import FiniteGroup
 from orbiframe_groups.lattice import lattice_group
 from orbiframe_groups.regular_polygon import regular_polygon_group
+
+from orbiframe.testing import Lab, contract_tests, laws_of
 
 GROUP = laws_of("group")
 
