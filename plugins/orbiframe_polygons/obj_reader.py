@@ -1,0 +1,157 @@
+"""OBJ reader: polygons in the text format of Wavefront."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe import FormatError, Polyhedron
+from orbiframe_polygons.faces import colours, corners, offsets_of, require_colours, require_sizes
+from orbiframe_polygons.text import Text, read_text, shown
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+# Statements without polygons: names, materials, drawing, points and lines.
+IGNORED = frozenset(
+    b"vt vp o g s mg mtllib usemtl usemap maplib l p bevel c_interp d_interp lod shadow_obj trace_obj".split()
+)
+CORNER = re.compile(rb"[+-]?\d+(/[+-]?\d*(/([+-]?\d+)?)?)?")
+BLANK, SLASH = 32, 47
+
+
+def read(path: Path) -> Polyhedron:
+    """The polyhedron of an OBJ file: polygons, normals, and colours after the coordinates (`v x y z r g b`).
+
+    Negative indices count back from where they stand. Names, groups and texture coordinates are skipped, and no
+    material file is opened. Normals are kept where all corners of each vertex have the same normal. Raises FormatError
+    with the line for anything else that the format does not know, free-form curves included.
+
+    Source: Wavefront, Advanced Visualizer manual, appendix B1: Object files.
+    """
+    text = read_text(path, continued=True)
+    vertex, normal, face = (_starting(text, word) for word in (b"v", b"vn", b"f"))
+    _require_known(text, vertex | normal | face)
+    vertices, colors = _vertices(text.only(vertex))
+    directions = _normals(text.only(normal))
+    faces = text.only(face).without_keyword(1)
+    if not len(faces):
+        raise FormatError(f"{path}: the file holds no faces (lines that start with f)")
+    seen = [np.cumsum(kind, dtype=np.intp)[face] for kind in (vertex, normal)]
+    points, pointers = _corners(faces, (seen[0], len(vertices)), (seen[1], len(directions)))
+    normals = _per_vertex(points, pointers, directions, len(vertices))
+    return Polyhedron.from_corners(vertices, offsets_of(faces.words), points, normals=normals, colors=colors)
+
+
+def _starting(text: Text, word: bytes) -> Bools:
+    """Which lines start with this word."""
+    data = np.append(text.data, np.zeros(len(word) + 1, dtype=np.uint8))
+    fits = data[text.begin + len(word)] <= BLANK
+    for k, code in enumerate(word):
+        fits &= data[text.begin + k] == code
+    return fits
+
+
+def _require_known(text: Text, known: Bools) -> None:
+    for row in np.flatnonzero(~known).tolist():
+        word = text.line(row).split(None, 1)[0]
+        if word not in IGNORED:
+            text.refuse(row, f"found {shown(word)}; v, vt, vn, f, groups and materials are read, nothing else")
+
+
+def _vertices(text: Text) -> tuple[Floats, Floats | None]:
+    text = text.without_keyword(1)
+    wrong = np.flatnonzero(~np.isin(text.words, (3, 4, 6, 7)))
+    if len(wrong):
+        text.refuse(int(wrong[0]), f"found {text.words[wrong[0]]} numbers, but a vertex has 3, or 6 with a colour")
+    values = text.numbers()
+    vertices = values[text.first[:, None] + np.arange(3)]
+    if not len(text) or (text.words != text.words[0]).any() or text.words[0] < 6:
+        return vertices, None
+    colors = colours(values.reshape(len(text), -1)[:, 3:])
+    require_colours(colors, text.path)
+    return vertices, colors
+
+
+def _normals(text: Text) -> Floats:
+    text = text.without_keyword(2)
+    wrong = np.flatnonzero(text.words != 3)
+    if len(wrong):
+        text.refuse(int(wrong[0]), f"found {text.words[wrong[0]]} numbers, but a normal has 3")
+    return text.numbers().reshape(-1, 3)
+
+
+def _corners(faces: Text, vertices: tuple[Ints, int], normals: tuple[Ints, int]) -> tuple[Ints, Ints | None]:
+    """The vertex of each corner and, where every corner has one, its normal.
+
+    vertices, normals: how many of them stand before each face, and in the whole file.
+    """
+
+    def place(face: int) -> str:
+        return f"{faces.path}, line {faces.number[face]}"
+
+    sizes = faces.words
+    require_sizes(sizes, place)
+    values, slot = _numbers_and_slots(faces)
+    points = corners(_from_zero(faces, values[slot == 0], vertices[0]), sizes, vertices[1], place)
+    if (slot == 2).sum() != len(points):
+        return points, None
+    return points, corners(_from_zero(faces, values[slot == 2], normals[0]), sizes, normals[1], place, noun="normal")
+
+
+def _numbers_and_slots(faces: Text) -> tuple[Floats, Ints]:
+    """All numbers of all corners, and how many slashes precede each in its corner (v/vt/vn)."""
+    slash = faces.data == SLASH
+    if not slash.any():
+        values = faces.numbers()
+        return values, np.zeros(len(values), dtype=np.intp)
+    number = _starts((faces.data > BLANK) & ~slash)
+    word = _starts(faces.data > BLANK)
+    at, words_at = np.flatnonzero(number), np.flatnonzero(word)
+    slashes = np.cumsum(slash, dtype=np.int32)
+    slot = slashes[at] - slashes[words_at][np.cumsum(word, dtype=np.int32)[at] - 1]
+    data = np.where(slash, np.uint8(BLANK), faces.data)
+    loose = replace(faces, data=data, words=np.diff(np.searchsorted(at, faces.begin), append=len(at)))
+    values = loose.numbers()
+    if (slot > 2).any() or (slot == 0).sum() != len(words_at) or slash[words_at].any():
+        _blame(faces)
+    return values, slot.astype(np.intp)
+
+
+def _starts(inside: Bools) -> Bools:
+    """Where runs of marked bytes start."""
+    starts = inside.copy()
+    starts[1:] &= ~inside[:-1]
+    return starts
+
+
+def _blame(faces: Text) -> NoReturn:
+    for row in range(len(faces)):
+        for word in faces.line(row).split():
+            if not CORNER.fullmatch(word):
+                faces.refuse(row, f"found {shown(word)}, but a corner is written v, v/vt, v//vn or v/vt/vn")
+    raise FormatError(f"{faces.path}: the corners of the faces cannot be read")
+
+
+def _from_zero(faces: Text, values: Floats, seen: Ints) -> Floats:
+    """Indices that count from 0, where those of the file count from 1, or from -1 backwards."""
+    zero = np.flatnonzero(values == 0)
+    if len(zero):
+        row = int(np.searchsorted(np.cumsum(faces.words), zero[0], side="right"))
+        faces.refuse(row, "found the index 0, but OBJ counts from 1")
+    return np.where(values < 0, np.repeat(seen, faces.words) + values, values - 1)
+
+
+def _per_vertex(points: Ints, pointers: Ints | None, directions: Floats, count: int) -> Floats | None:
+    """The normals of the vertices, where all corners of each vertex agree."""
+    if pointers is None:
+        return None
+    normals = np.zeros((count, 3))
+    normals[points] = directions[pointers]
+    return normals if (normals[points] == directions[pointers]).all() else None

@@ -1,0 +1,84 @@
+"""PLY reader: the Polygon File Format of Stanford, as text or binary in either order of bytes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe import FormatError, Polyhedron
+from orbiframe_polygons.faces import corners, offsets_of, require_colours, require_finite, require_sizes
+from orbiframe_polygons.ply_body import Table, tables
+from orbiframe_polygons.ply_header import parse
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+
+def read(path: Path) -> Polyhedron:
+    """The polyhedron of a PLY file: polygons, normals, colours of vertices and faces.
+
+    Other elements and properties are skipped. Raises FormatError with the line or byte where header and body do not
+    fit, where an index is out of range and where a coordinate is not finite.
+
+    Source: G. Turk, The PLY Polygon File Format, 1994.
+    """
+    data = path.read_bytes()
+    header = parse(path, data)
+    found = {table.element.name: table for table in tables(path, data, header)}
+    for name in ("vertex", "face"):
+        if name not in found:
+            raise FormatError(f"{path}: the header declares no element '{name}'; polygons need both vertex and face")
+    vertex, face = found["vertex"], found["face"]
+    vertices = _columns(path, vertex, ("x", "y", "z"))
+    if vertices is None:
+        raise FormatError(f"{path}: the element 'vertex' lacks one of the properties x, y and z")
+    offsets, tail = _faces(path, face, len(vertices))
+    return Polyhedron.from_corners(
+        vertices,
+        offsets,
+        tail,
+        normals=_columns(path, vertex, ("nx", "ny", "nz")),
+        colors=_colours(path, vertex),
+        face_colors=_colours(path, face),
+    )
+
+
+def _columns(path: Path, table: Table, names: tuple[str, ...]) -> Floats | None:
+    """The columns of these names as float64, (rows, columns), None where one is missing."""
+    if not all(name in table.columns for name in names):
+        return None
+    for name in names:
+        if name in table.sizes:
+            raise FormatError(f"{path}: the property '{name}' of '{table.element.name}' is a list, not a number")
+    values = np.stack([table.columns[name].astype(np.float64) for name in names], axis=1)
+    require_finite(values, table.place)
+    return values
+
+
+def _faces(path: Path, face: Table, vertex_count: int) -> tuple[Ints, Ints]:
+    for name in ("vertex_indices", "vertex_index"):
+        if name in face.sizes:
+            sizes = face.sizes[name]
+            require_sizes(sizes, face.place)
+            return offsets_of(sizes), corners(face.columns[name], sizes, vertex_count, face.place)
+    raise FormatError(f"{path}: the element 'face' has no list 'vertex_indices'")
+
+
+def _colours(path: Path, table: Table) -> Floats | None:
+    """The colours of a table from 0 to 1: integers count to the largest of their type, other numbers to 1."""
+    opaque = ("red", "green", "blue")
+    names = (*opaque, "alpha") if "alpha" in table.columns else opaque
+    values = _columns(path, table, names)
+    if values is None:
+        return None
+    kinds = [np.dtype(p.type) for name in names for p in table.element.properties if p.name == name]
+    colors: Floats = values / [_largest(kind) for kind in kinds]
+    require_colours(colors, path)
+    return colors
+
+
+def _largest(kind: np.dtype[Any]) -> int:
+    return 1 if kind.kind == "f" else int(np.iinfo(kind).max)

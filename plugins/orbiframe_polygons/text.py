@@ -1,0 +1,152 @@
+"""Text: the lines of a file as one table of bytes, so that all their numbers are read at once."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe import FormatError
+from orbiframe_polygons.floats import parsed
+
+Bytes = NDArray[np.uint8]
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+NUMBER = re.compile(rb"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+NEWLINE, BLANK, CONTINUED = 10, 32, 11
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """The lines of a text file that are not blank; words are separated by blanks.
+
+    data: the bytes of the file; begin, end: the byte of the first word of each line and the byte after the line;
+    number: the line number in the file; words: how many words the line has.
+    """
+
+    path: Path
+    data: Bytes
+    begin: Ints
+    end: Ints
+    number: Ints
+    words: Ints
+
+    def __len__(self) -> int:
+        return len(self.begin)
+
+    @property
+    def first(self) -> Ints:
+        """Index of the first word of each line among all words."""
+        return np.cumsum(self.words) - self.words
+
+    def lines(self, first: int, last: int) -> Text:
+        """The lines first to last - 1 of the table."""
+        part = slice(first, last)
+        return replace(
+            self, begin=self.begin[part], end=self.end[part], number=self.number[part], words=self.words[part]
+        )
+
+    def only(self, wanted: Bools) -> Text:
+        """The marked lines, with their bytes moved together."""
+        picked = replace(
+            self, begin=self.begin[wanted], end=self.end[wanted], number=self.number[wanted], words=self.words[wanted]
+        )
+        marks = np.zeros(len(self.data) + 2, dtype=np.int8)
+        marks[picked.begin] += 1
+        marks[picked.end + 1] -= 1
+        data = np.append(self.data, np.uint8(NEWLINE))[np.cumsum(marks[:-1], dtype=np.int8).view(np.bool_)]
+        size = picked.end - picked.begin
+        begin = np.cumsum(size + 1) - (size + 1)
+        return replace(picked, data=data, begin=begin, end=begin + size)
+
+    def without_keyword(self, length: int) -> Text:
+        """The same lines without their first word, of a known length."""
+        data = self.data.copy()
+        for k in range(length):
+            data[self.begin + k] = BLANK
+        return replace(self, data=data, begin=self.begin + length, words=self.words - 1)
+
+    def line(self, row: int) -> bytes:
+        """The bytes of one line, from its first word on."""
+        return self.data[self.begin[row] : self.end[row]].tobytes()
+
+    def numbers(self) -> Floats:
+        """All words of all lines as finite numbers, in one array. Raises FormatError with the line of a bad word."""
+        values = parsed(self._block())
+        if values is None or len(values) != self.words.sum():
+            self._blame()
+        bad = np.flatnonzero(~np.isfinite(values))
+        if len(bad):
+            row = int(np.searchsorted(self.first, bad[0], side="right")) - 1
+            word = self.line(row).split()[int(bad[0] - self.first[row])]
+            self.refuse(row, f"found {shown(word)}, but only finite numbers are allowed")
+        return values
+
+    def refuse(self, row: int, complaint: str) -> NoReturn:
+        """Raise FormatError with the file and the line."""
+        raise FormatError(f"{self.path}, line {self.number[row]}: {complaint}")
+
+    def _block(self) -> bytes:
+        return self.data[self.begin[0] : self.end[-1]].tobytes() if len(self) else b""
+
+    def _blame(self) -> NoReturn:
+        for row in range(len(self)):
+            for word in self.line(row).split():
+                if not NUMBER.fullmatch(word):
+                    self.refuse(row, f"found {shown(word)}, but a decimal number is required")
+        raise FormatError(f"{self.path}: the numbers cannot be read; is this a text file?")
+
+
+def read_text(path: Path, *, continued: bool = False) -> Text:
+    """The lines of a file that are left when comments (from # to the end of the line) are taken away.
+
+    A byte order mark is dropped; lines end with LF, CRLF or CR; continued: a backslash at the end of a line joins it to
+    the next. Raises FormatError for UTF-16 and for bytes that are no text.
+    """
+    data = plain(path, path.read_bytes())
+    if b"#" in data:
+        data = re.sub(rb"#[^\n]*", b"", data)
+    if continued and b"\\\n" in data:
+        data = data.replace(b"\\\n", b" \v")
+    return table(path, data)
+
+
+def plain(path: Path, data: bytes) -> bytes:
+    """The bytes of a text without byte order mark, and with LF at the end of each line."""
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise FormatError(f"{path}: the text is UTF-16; save it as UTF-8")
+    if b"\0" in data:
+        line = data[: data.index(b"\0")].count(b"\n") + 1
+        raise FormatError(f"{path}, line {line}: found a zero byte, but a text file is required; is the file binary?")
+    data = data.removeprefix(b"\xef\xbb\xbf").replace(b"\v", b" ")
+    return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+
+
+def table(path: Path, data: bytes, *, line: int = 1) -> Text:
+    """The lines of a text that are not blank; line: the number of the first line."""
+    codes = np.frombuffer(data, dtype=np.uint8)
+    starts = codes > BLANK
+    starts[1:] &= codes[:-1] <= BLANK
+    newlines = np.flatnonzero(codes == NEWLINE)
+    begin = np.concatenate([[0], newlines + 1])
+    word = np.flatnonzero(starts)
+    words = np.diff(np.searchsorted(word, begin), append=len(word))
+    number = np.arange(line, line + len(begin))
+    if CONTINUED in data:
+        number += np.searchsorted(np.flatnonzero(codes == CONTINUED), begin)
+    filled = words > 0
+    first = (np.cumsum(words) - words)[filled]
+    end = np.append(newlines, len(codes))[filled]
+    return Text(path, codes, word[first], end, number[filled], words[filled])
+
+
+def shown(word: bytes) -> str:
+    """A word of a file as it may stand in a sentence: quoted, decoded and not too long."""
+    text = word[:40].decode("utf-8", errors="replace")
+    return repr(text + "…" if len(word) > 40 else text)
