@@ -1,0 +1,166 @@
+"""Every law on every installed component, and every mutant rejected by its law."""
+
+from __future__ import annotations
+
+import pytest
+
+from orbiframe.errors import OrbiframeError, UsageError
+from orbiframe.plugin import KINDS, Component
+from orbiframe.registry import Registry, resolve
+from orbiframe.testing import Lab, component_laws, contract_tests, laws_of
+from orbiframe.testing.check import check, equipments
+from orbiframe.testing.kit import has_laws, tried
+
+LAWFUL_KINDS = ("geometry", "group", "basis", "fitter", "reader", "writer")
+REGISTRY = Registry.discover()
+DECLARED = [component for component, _ in REGISTRY.declarations()]
+
+
+def title(component: Component) -> str:
+    return f"{component.kind}/{component.name}"
+
+
+def component_cases():
+    return [
+        pytest.param(component, equipment, law, id=" ".join([title(component), *suffix(equipment), law.__name__]))
+        for component in DECLARED
+        if component.kind in LAWFUL_KINDS
+        for equipment in equipments(component, REGISTRY)
+        for law in laws_of(component.kind).laws
+    ]
+
+
+def suffix(equipment: dict) -> list[str]:
+    return [equipment["suffix"]] if equipment else []
+
+
+def mutant_cases():
+    """Each mutation on the first installed component of its kind that needs no extra."""
+    return [
+        pytest.param(kind, name, id=f"{kind} {name}") for kind in LAWFUL_KINDS for name in sorted(laws_of(kind).mutants)
+    ]
+
+
+@pytest.mark.parametrize("kind", LAWFUL_KINDS)
+def test_every_kind_has_laws_a_mutant_for_each_and_a_component(kind):
+    laws = laws_of(kind)
+    names = [law.__name__ for law in laws.laws]
+    assert len(set(names)) == len(names) > 0
+    assert sorted(laws.mutants) == sorted(names)
+    assert all(law.__doc__ for law in laws.laws)
+    assert REGISTRY.components(kind)
+
+
+@pytest.mark.parametrize("law", component_laws.LAWS, ids=lambda law: law.__name__)
+@pytest.mark.parametrize("component", DECLARED, ids=title)
+def test_every_component_keeps_the_laws_of_components(component, law):
+    law(component)
+
+
+@pytest.mark.parametrize(("component", "equipment", "law"), component_cases())
+def test_every_component_keeps_the_laws_of_its_kind(component, equipment, law, tmp_path):
+    law(resolve(component), Lab(tmp_path, **equipment))
+
+
+@pytest.mark.parametrize(("kind", "name"), mutant_cases())
+def test_every_mutant_is_rejected(kind, name, tmp_path):
+    laws = laws_of(kind)
+    law = next(law for law in laws.laws if law.__name__ == name)
+    rejections = [
+        rejected(law, laws.mutants[name], c, tmp_path / c.name) for c in REGISTRY.components(kind) if not c.extra
+    ]
+    assert any(rejections)
+
+
+def rejected(law, mutation, component: Component, folder) -> bool:
+    equipment = next(iter(equipments(component, REGISTRY)))
+    folder.mkdir()
+    return tried(law, mutation(resolve(component)), Lab(folder, **equipment)).error is not None
+
+
+MALFORMED = {
+    "target_resolves": Component("basis", "a", "no_such_package_anywhere:f", "one line"),
+    "signature_fits": Component("basis", "a", "tests_of_the_kit:one_argument", "one line"),
+    "options_documented": Component("fitter", "a", "tests_of_the_kit:undocumented", "one line"),
+    "summary_is_one_line": Component("fitter", "a", "tests_of_the_kit:documented", "One line. And a stop."),
+    "suffixes_are_written_alike": Component(
+        "reader", "a", "tests_of_the_kit:one_argument", "one line", None, (".OFF",)
+    ),
+}
+
+
+@pytest.fixture
+def _helper_module(monkeypatch):
+    import sys
+    import types
+
+    module = types.ModuleType("tests_of_the_kit")
+    module.one_argument, module.undocumented, module.documented = one_argument, undocumented, documented
+    monkeypatch.setitem(sys.modules, "tests_of_the_kit", module)
+
+
+def one_argument(x):
+    """One."""
+
+
+def undocumented(*, strength: float = 1.0):
+    """Nothing is said."""
+
+
+def documented(*, strength: float = 1.0):
+    """strength: how strong."""
+
+
+@pytest.mark.usefixtures("_helper_module")
+@pytest.mark.parametrize("name", [law.__name__ for law in component_laws.LAWS])
+def test_every_malformed_component_is_rejected(name):
+    law = next(law for law in component_laws.LAWS if law.__name__ == name)
+    with pytest.raises((AssertionError, OrbiframeError)):
+        law(MALFORMED[name])
+
+
+@pytest.mark.usefixtures("_helper_module")
+def test_a_component_that_cannot_be_imported_gets_one_verdict():
+    (verdict,) = check(MALFORMED["target_resolves"], REGISTRY)
+    assert "no_such_package_anywhere" in verdict.error
+
+
+def test_a_kind_without_laws_is_named():
+    assert [kind for kind in KINDS if has_laws(kind)] == list(LAWFUL_KINDS)
+    with pytest.raises(UsageError, match="no laws for the kind 'command'; kinds with laws: geometry"):
+        laws_of("command")
+
+
+test_h2_by_the_public_way = contract_tests("geometry", REGISTRY.load("geometry", "h2"))
+
+
+class Elsewhere:
+    """A geometry whose every construction fails."""
+
+    def __init__(self) -> None:
+        raise ValueError("nothing works")
+
+
+test_expected_failures_are_strict = contract_tests(
+    "geometry",
+    Elsewhere,
+    expected_failures={law.__name__: "the component cannot even be made" for law in laws_of("geometry").laws},
+)
+
+
+def test_expected_failures_are_laws():
+    with pytest.raises(UsageError, match="no law of the kind 'geometry' is named 'no_such_law'"):
+        contract_tests("geometry", Elsewhere, expected_failures={"no_such_law": "why"})
+
+
+def test_options_are_bound(tmp_path):
+    seen = []
+
+    def recorded(*, scale: float = 1.0) -> None:
+        seen.append(scale)
+        raise ValueError
+
+    test = contract_tests("geometry", recorded, params={"scale": 0.4})
+    with pytest.raises(ValueError):  # noqa: PT011
+        test(laws_of("geometry").laws[0], tmp_path)
+    assert seen == [0.4]
