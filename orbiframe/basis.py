@@ -82,17 +82,17 @@ class OrbitSumBasis(DifferentiableBasis):
         jets = self._profile_jets(pairs, order)
         start, column, jets = _sum_lifts(pairs.start, pairs.column, jets)
         total = np.add.reduceat(jets, start[:-1], axis=1)
-        lost = np.flatnonzero(~(total[0] > 0))
+        lost = np.flatnonzero(~(total[0] >= np.finfo(float).tiny))
         if len(lost):
             _uncovered(points, pairs.rows[lost[0]])
-        return _Block(pairs.rows, start, column, _quotient(jets, np.repeat(total, np.diff(start), axis=1)))
+        return _Block(pairs.rows, start, column, _quotient(jets, total, np.diff(start)))
 
     def _profile_jets(self, pairs: Pairs, order: int) -> Floats:
         """The jets of f(c / c_i) from D c and Hess c = (1 - K c) g, (1, 3 or 6 rows, one column per pair)."""
         support = self.support[pairs.column]
         f, df, ddf = self.profile(pairs.versine / support)
         if order == 0:
-            return f[None]
+            return np.array(f)[None]
         c1, c2 = pairs.slope.T
         df = df / support
         if order == 1:
@@ -129,15 +129,19 @@ def _sum_lifts(start: Ints, column: Ints, jets: Floats) -> tuple[Ints, Ints, Flo
     return np.searchsorted(keep, start), column[keep], np.add.reduceat(jets, keep, axis=1)
 
 
-def _quotient(jets: Floats, total: Floats) -> Floats:
-    """The jets of phi / S from the jets of phi and S, by the quotient rule; rows b, 1, 2, 11, 12, 22."""
-    out = np.asarray(jets / total[0])
-    if len(jets) > 1:
-        out[1:3] -= out[0] * total[1:3] / total[0]
+def _quotient(jets: Floats, total: Floats, count: Ints) -> Floats:
+    """The jets of phi / S from the jets of phi and S, by the quotient rule; rows b, 1, 2, 11, 12, 22.
+
+    jets: (m, p), overwritten; total: (m, r), their sums over each row; count: (r,), pairs in each row.
+    """
+    jets *= np.repeat(1 / total[0], count)
+    sums = [np.repeat(row, count) for row in total / total[0]]
+    for a in range(1, min(len(jets), 3)):
+        jets[a] -= jets[0] * sums[a]
     if len(jets) > 3:
         for row, (a, b) in enumerate(((1, 1), (1, 2), (2, 2)), start=3):
-            out[row] -= (out[a] * total[b] + out[b] * total[a] + out[0] * total[row]) / total[0]
-    return out
+            jets[row] -= jets[a] * sums[b] + jets[b] * sums[a] + jets[0] * sums[row]
+    return jets
 
 
 def _assemble(blocks: list[_Block], shape: tuple[int, int], kinds: int) -> list[csr_array]:

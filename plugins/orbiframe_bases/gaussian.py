@@ -26,7 +26,7 @@ Ints = NDArray[np.intp]
 
 
 class Gaussian(OrbitSumBasis):
-    """Gaussians about `size` vertices, farthest points of the mesh in space, summed over the group (paper, section 3.1).
+    """Gaussians about `size` vertices, farthest points of the mesh in space, summed over the group (paper, 3.1).
 
     The profile is exp(-2 c / s^2) times the bump exp(1 - 1/(1 - c / c_max)), where c is the versine (1 - cos d, d^2/2
     or cosh d - 1), hence C-infinity in all three geometries, and all functions add up to 1.
@@ -109,7 +109,7 @@ def _covering(triangulation: Triangulation, spacing: Spacing) -> Floats:
     np.maximum.at(longest, mesh.tail, np.maximum.reduceat(lengths, mesh.offsets[:-1])[mesh.face])
     farthest = np.zeros(len(spacing.chosen))
     np.maximum.at(farthest, path.owner, path.distance + longest)
-    return np.maximum(1.25 * _versine(triangulation.orbifold.geometry, farthest), np.finfo(float).tiny)
+    return np.asarray(np.maximum(1.25 * _versine(triangulation.orbifold.geometry, farthest), np.finfo(float).tiny))
 
 
 def _lengths(triangulation: Triangulation) -> Floats:

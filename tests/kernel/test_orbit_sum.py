@@ -8,8 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 import reference_surfaces as surfaces
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from orbiframe.atlas import Points
 from orbiframe.basis import OrbitSumBasis
