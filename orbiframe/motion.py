@@ -90,7 +90,7 @@ def _hyperbolic_motion(g: Floats, inverse: Floats, parity: int, small: float, sp
 
 
 def _fixed_vector(g: Floats, inverse: Floats, cosine: float) -> Floats:
-    """The eigenvector of g for its real eigenvalue +1 or -1: the longest column of a multiple of the projector on it."""
+    """The eigenvector of g for its real eigenvalue +1 or -1: the longest column of the projector on it, scaled."""
     projector = (g + inverse) / 2 - cosine * np.eye(3)
     return np.asarray(projector[:, np.argmax(np.sum(projector**2, axis=0))])
 

@@ -34,7 +34,7 @@ CASES = (
     ("h2", "abABcdCD"),
     ("h2", "abcdABCD"),
     ("h2", "aabbcc"),
-    ("h2", "abcBAc"),
+    ("h2", "abACbC"),
 )
 
 

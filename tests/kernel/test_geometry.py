@@ -1,10 +1,9 @@
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
+from reference_geometries import GEOMETRIES, exact_distance, exact_point, random_points
 
-from geometries import GEOMETRIES, exact_distance, exact_point, random_points
 from orbiframe import GeometryError
 
 S2, E2, H2 = GEOMETRIES
@@ -230,7 +229,7 @@ def test_reflections_tell_their_mirror(geometry):
 
 def test_the_special_motions():
     assert [geometry.classify(np.eye(3)) for geometry in GEOMETRIES] == ["identity"] * 3
-    by, g = _conjugate(H2, H2.parabolic(0.7, 1.1))
+    _, g = _conjugate(H2, H2.parabolic(0.7, 1.1))
     motion = H2.motion(g)
     assert motion.kind == "parabolic"
     np.testing.assert_allclose(g @ motion.point, motion.point, atol=1e-12)

@@ -2,7 +2,6 @@
 
 import mpmath
 import numpy as np
-
 from orbiframe_geometries.e2 import E2
 from orbiframe_geometries.h2 import H2
 from orbiframe_geometries.s2 import S2
