@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from orbiframe.spacing import (
         Graph as Graph,
         Spacing as Spacing,
+        curve_order as curve_order,
         dijkstra_forest as dijkstra_forest,
         edge_graph as edge_graph,
         farthest_points as farthest_points,
@@ -70,7 +71,7 @@ _HOMES = {
     "basis": "Basis DifferentiableBasis OrbitSumBasis",
     "fitter": "Fitter",
     "topology": "SurfaceType surface_type fan_labels reversed_faces",
-    "spacing": "edge_graph farthest_points dijkstra_forest Graph Spacing",
+    "spacing": "edge_graph farthest_points dijkstra_forest curve_order Graph Spacing",
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
 

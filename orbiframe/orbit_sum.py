@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from orbiframe.atlas import Points
 from orbiframe.orbifold import Copies, Orbifold
+from orbiframe.spacing import curve_order
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -61,8 +62,9 @@ def reaching_pairs(
         radii = np.array([orbifold.geometry.distance(orbifold.geometry.origin, points.x[m]).max() for m in batch])
         copies = field.copies_within(patches[begin : begin + _BATCH], radii)
         bounds = np.searchsorted(copies.base, np.arange(len(batch) + 1))
-        for rows, radius, (low, high) in zip(batch, radii, pairwise(bounds), strict=True):
+        for unsorted, radius, (low, high) in zip(batch, radii, pairwise(bounds), strict=True):
             images = field.images(copies.take(np.arange(low, high)), radius)
+            rows = unsorted[curve_order(points.x[unsorted])]
             for part in np.split(rows, range(_BLOCK, len(rows), _BLOCK)):
                 yield _pairs_of_block(orbifold, images, part, points.x[part], slopes)
 
@@ -119,13 +121,13 @@ def versine_distance(curvature: int, versine: Floats) -> Floats:
 
 
 def _pairs_of_block(orbifold: Orbifold, images: _Images, rows: Ints, x: Floats, slopes: bool) -> Pairs:
-    geometry, order = orbifold.geometry, _curve_order(x)
-    curvature, sorted_x = geometry.curvature, x[order]
+    """The pairs of some points x of one patch, (r, 3), in an order in which neighbours are near."""
+    geometry, curvature = orbifold.geometry, orbifold.geometry.curvature
     levels = max(int(np.ceil(np.log2(len(rows) / _LEAF))), 0)
-    ball, spread = _balls(curvature, sorted_x, levels)
+    ball, spread = _balls(curvature, x, levels)
 
     def search(cursor: Ints, found: Ints, versine: Floats, fill: bool) -> int:
-        tree = (curvature, sorted_x, ball, spread, levels, order)
+        tree = (curvature, x, ball, spread, levels)
         return int(_search(tree, images.x, images.support, cursor, found, versine, fill))
 
     count = np.zeros(len(rows), dtype=np.intp)
@@ -137,18 +139,6 @@ def _pairs_of_block(orbifold: Orbifold, images: _Images, rows: Ints, x: Floats, 
     if slopes:
         slope = _slopes(curvature, x, np.ascontiguousarray(geometry.frame(x)), start, images.x[image])
     return Pairs(rows, start, images.column[image], versine, slope, tests)
-
-
-def _curve_order(x: Floats) -> Ints:
-    """Points sorted along a space-filling curve (Morton's) in (x1, x2), one half of S^2 after the other."""
-    plane = x[:, 1:] - x[:, 1:].min(axis=0)
-    cell = (plane * ((2**31 - 1) / (plane.max() or 1.0))).astype(np.uint64)
-    for shift, mask in ((16, 0x0000FFFF0000FFFF), (8, 0x00FF00FF00FF00FF), (4, 0x0F0F0F0F0F0F0F0F)):
-        cell = (cell | cell << np.uint64(shift)) & np.uint64(mask)
-    for shift, mask in ((2, 0x3333333333333333), (1, 0x5555555555555555)):
-        cell = (cell | cell << np.uint64(shift)) & np.uint64(mask)
-    half = (x[:, 0] < 0).astype(np.uint64) << np.uint64(62)
-    return np.argsort(cell[:, 0] | cell[:, 1] << np.uint64(1) | half, kind="stable")
 
 
 @njit(inline="always")
@@ -205,7 +195,7 @@ def _search(tree, images, support, cursor, found, versine, fill):  # type: ignor
     With s = sqrt(versine / 2) = sin(d/2), d/2 or sinh(d/2), the s of a sum or difference of distances follows from the
     addition theorem: discs of radii a, b at distance d are apart if s(d) > s(a + b), nested if s(d) < s(a - b).
     """
-    curvature, x, ball, spread, levels, row = tree
+    curvature, x, ball, spread, levels = tree
     n, tests = len(x), 0
     stack = np.empty(2 * levels + 4, dtype=np.intp)
     for j in range(len(images)):
@@ -241,16 +231,16 @@ def _search(tree, images, support, cursor, found, versine, fill):  # type: ignor
                 continue
             if inside and not fill:
                 for i in range(low, high):
-                    cursor[row[i]] += 1
+                    cursor[i] += 1
                 continue
             tests += high - low
             for i in range(low, high):
                 c = _versine(curvature, m0, m1, m2, x[i, 0], x[i, 1], x[i, 2])
                 if inside or c < support[j]:
-                    place = cursor[row[i]]
+                    place = cursor[i]
                     if fill:
                         found[place], versine[place] = j, c
-                    cursor[row[i]] = place + 1
+                    cursor[i] = place + 1
     return tests
 
 

@@ -1,4 +1,4 @@
-"""Spacing: shortest paths along the edges of a polyhedron, and vertices spread evenly by them."""
+"""Spacing: shortest paths along the edges of a polyhedron, vertices spread evenly by them, points sorted by place."""
 
 from __future__ import annotations
 
@@ -14,6 +14,15 @@ from orbiframe.polyhedron import Polyhedron
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
+
+# Steps that put a zero bit between any two of the 32 lowest bits of a number.
+_SPREAD_BITS = (
+    (16, 0x0000FFFF0000FFFF),
+    (8, 0x00FF00FF00FF00FF),
+    (4, 0x0F0F0F0F0F0F0F0F),
+    (2, 0x3333333333333333),
+    (1, 0x5555555555555555),
+)
 
 
 class Graph(NamedTuple):
@@ -83,6 +92,21 @@ def farthest_points(graph: Graph, count: int, *, first: int = 0, radius: float =
 def dijkstra_forest(graph: Graph, sources: ArrayLike) -> Forest:
     """The shortest path from the nearest source to every vertex; equal distances go to the source found first."""
     return Forest(*_forest(graph.start, graph.neighbour, graph.length, np.asarray(sources, dtype=np.intp)))
+
+
+def curve_order(x: Floats) -> Ints:
+    """Points of X in one frame, (n, 3), sorted along a space-filling curve, so that neighbours in the list are near.
+
+    Morton's curve in (x1, x2) on a grid of 2^31 by 2^31 cells over the points, one half of S^2 after the other.
+    """
+    if len(x) == 0:
+        return np.zeros(0, dtype=np.intp)
+    plane = x[:, 1:] - x[:, 1:].min(axis=0)
+    cell = (plane * ((2**31 - 1) / (plane.max() or 1.0))).astype(np.uint64)
+    for shift, mask in _SPREAD_BITS:
+        cell = (cell | cell << np.uint64(shift)) & np.uint64(mask)
+    half = (x[:, 0] < 0).astype(np.uint64) << np.uint64(62)
+    return np.argsort(cell[:, 0] | cell[:, 1] << np.uint64(1) | half, kind="stable")
 
 
 @njit(cache=True)

@@ -94,7 +94,7 @@ def _supports(triangulation: Triangulation, spacing: Spacing, per_area: float) -
     support = np.maximum(per_area * cells, least)
     for _ in range(2):
         support = _smoothed(support, spacing.owner[mesh.tail], spacing.owner[mesh.head])
-    return np.maximum(support, least)
+    return np.asarray(np.maximum(support, least))
 
 
 def _covering(triangulation: Triangulation, spacing: Spacing) -> Floats:
@@ -116,7 +116,7 @@ def _lengths(triangulation: Triangulation) -> Floats:
     """Length in X of every halfedge."""
     mesh, orbifold, x = triangulation.polyhedron, triangulation.orbifold, triangulation.points
     heads = orbifold.geometry.act(orbifold.atlas.isometry[triangulation.transition], x[mesh.head])
-    return orbifold.geometry.distance(x[mesh.tail], heads)
+    return np.asarray(orbifold.geometry.distance(x[mesh.tail], heads))
 
 
 def _versine(geometry: Geometry, distance: Floats) -> Floats:

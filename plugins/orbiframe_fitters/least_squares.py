@@ -11,7 +11,7 @@ from scipy.sparse import csc_array, csr_array, diags_array, eye_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 from scipy.sparse.linalg import splu
 
-from orbiframe import Basis, DifferentiableBasis, FitError, Fitter, Samples, UsageError
+from orbiframe import Basis, DifferentiableBasis, FitError, Fitter, Samples, UsageError, curve_order
 from orbiframe_fitters.gram import add_gram
 
 Floats = NDArray[np.float64]
@@ -84,8 +84,9 @@ def _normal_equations(basis: Basis, samples: Samples, smoothing: float) -> tuple
 
 
 def _chunks(samples: Samples) -> Iterator[Samples]:
-    """The samples patch by patch, so that few lifts serve many of them."""
-    order = np.argsort(samples.points.patch, kind="stable")
+    """The samples patch by patch and near ones together: they share lifts, and places of the matrix in the cache."""
+    order = curve_order(samples.points.x)
+    order = order[np.argsort(samples.points.patch[order], kind="stable")]
     for begin in range(0, len(order), _CHUNK):
         yield samples.take(order[begin : begin + _CHUNK])
 
