@@ -72,7 +72,7 @@ class FundamentalPolygon:
 
     @cached_property
     def side_flags(self) -> Floats:
-        """The isometries that take the origin and the direction (0, 1, 0) to the middle and the run of a side, (n, 3, 3)."""
+        """The isometries that take the origin and the direction (0, 1, 0) to the middle of a side and its run."""
         middles = self.geometry.project(self.vertices + self.heads)
         return self.geometry.flag(middles, self.geometry.log(middles, self.heads))
 
@@ -161,16 +161,16 @@ def regular_polygon(geometry: Geometry, word: Word) -> FundamentalPolygon:
     """The regular polygon whose n sides a word glues, with n/V corners round each of V vertices (section 2.5).
 
     Interior angle alpha = 2 pi V / n and cosh R = cot(pi / n) cot(alpha / 2) for the circumradius R; for a word with
-    one vertex, cosh R = cot^2(pi / n). Vertex k lies at angle 2 pi k / n in H^2. In E^2 the sides have length 1 and side
-    0 is the lowest; side 0 of the unit square runs from (-1/2, -1/2) to (1/2, -1/2).
+    one vertex, cosh R = cot^2(pi / n). Vertex k lies at angle 2 pi k / n in H^2. In E^2 the sides have length 1 and
+    side 0 is the lowest; side 0 of the unit square runs from (-1/2, -1/2) to (1/2, -1/2).
 
     Raises GeometryError if the surface has another geometry, or its vertices have different numbers of corners.
     """
     size, cycles = len(word), word.vertex_cycles
     if geometry.curvature > 0:
         raise GeometryError(
-            f"'{word}' has no convex polygon on the sphere: the cells of S^2 and P^2 are the sphere and the hemisphere, "
-            "which the group 'finite' uses; choose that group"
+            f"'{word}' has no convex polygon on the sphere: the cells are the whole sphere and the hemisphere; "
+            "choose the group 'finite'"
         )
     if np.sign(word.euler_characteristic) != geometry.curvature:
         right = {1: "s2", 0: "e2", -1: "h2"}[int(np.sign(word.euler_characteristic))]

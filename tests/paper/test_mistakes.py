@@ -126,7 +126,7 @@ def test_e09_every_group_has_a_fixed_point_of_the_identity_and_the_failure_needs
 
 
 def test_e10_the_cycle_relation_has_the_inner_letters_exchanged(octagon):
-    """a1 b1' a1' b1 a2 b2' a2' b2 = e; the printed a1 b1 a1' b1' ... is off by 2.5e6. Crosscaps are right as printed."""
+    """a1 b1' a1' b1 ... = e; the printed a1 b1 a1' b1' ... is off by 2.5e6. Crosscaps are right as printed."""
     assert np.abs(octagon.element("aBAbcDCd") - np.eye(3)).max() < 1e-10
     printed = np.abs(octagon.element("abABcdCD") - np.eye(3)).max()
     assert printed == pytest.approx(2.5e6, rel=0.01)
