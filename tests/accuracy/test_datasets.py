@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import tomllib
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -37,7 +38,7 @@ def polyhedron(name: str) -> Polyhedron:
 def triangle_fans(mesh: Polyhedron) -> np.ndarray:
     """The corners (n, 3, 3) of the faces cut in fans."""
     faces = np.split(mesh.tail, mesh.offsets[1:-1])
-    return np.array([mesh.vertices[[f[0], a, b]] for f in faces for a, b in zip(f[1:], f[2:], strict=False)])
+    return np.array([mesh.vertices[[f[0], a, b]] for f in faces for a, b in pairwise(f[1:])])
 
 
 def test_make_reproduces_every_file(tmp_path: Path) -> None:
