@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,6 +16,9 @@ from orbiframe.word import Word
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
+
+# The distance of a point from a line, by curvature, from its sine as `FundamentalPolygon.sides` gives it.
+_ARCSINE: dict[int, Callable[[float], float]] = {1: math.asin, 0: float, -1: math.asinh}
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,8 +97,7 @@ class FundamentalPolygon:
     @cached_property
     def inradius(self) -> float:
         """The distance of the origin from the nearest side."""
-        inverse_sine = {1: np.arcsin, 0: np.asarray, -1: np.arcsinh}[self.geometry.curvature]
-        return float(inverse_sine((self.sides @ self.geometry.origin).min()))
+        return _ARCSINE[self.geometry.curvature](float((self.sides @ self.geometry.origin).min()))
 
     @cached_property
     def area(self) -> float:
