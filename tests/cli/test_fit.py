@@ -1,0 +1,179 @@
+from __future__ import annotations
+
+import io
+import json
+from types import SimpleNamespace
+
+import pytest
+
+from orbiframe import pipeline
+from orbiframe.cli.progress import Progress
+from orbiframe.cli.report import json_text, summary, write_report
+
+KEYS = {
+    "surface": {"euler_characteristic", "orientable", "genus", "components"},
+    "group": {"source", "patches", "relation_defect"},
+    "map": {"triangles", "not_positive", "area_defect", "angle_distortion", "weights"},
+    "fit": {"basis", "size", "samples", "rms", "max"},
+    "output": {"vertices", "faces", "euler_characteristic"},
+}
+
+
+@pytest.fixture
+def small(cube):
+    """Arguments of a fit that takes a moment only."""
+    return [cube, "--size", "60", "--refine", "4"]
+
+
+def test_a_cube_becomes_smooth(orbiframe, small, tmp_path):
+    out, report, saved = tmp_path / "smooth.ply", tmp_path / "report.json", tmp_path / "smooth.native"
+    ran = orbiframe("fit", *small, "-o", out, "--report", report, "--save", saved)
+    assert (ran.status, ran.err) == (0, "")
+    assert "closed, orientable, genus 0, 1 component" in ran.out
+    written = json.loads(report.read_text())
+    for table, keys in KEYS.items():
+        assert keys <= set(written[table])
+    assert {"median", "p95", "max"} == set(written["map"]["angle_distortion"])
+    assert (written["geometry"], written["fit"]["size"], written["output"]["faces"]) == ("s2", 60, 12 * 16)
+    assert written["surface"] == written["surface"] | {"euler_characteristic": 2, "orientable": True, "genus": 0}
+    assert 0 < written["fit"]["rms"] <= written["fit"]["max"] < 0.1
+    assert sum(written["seconds"].values()) > 0
+    assert "numpy" in written["versions"]
+    assert saved.stat().st_size > 0
+    described = json.loads(orbiframe("info", out, "--json").out)
+    assert (described["faces"], described["genus"], described["closed"]) == (12 * 16, 0, True)
+    assert {path.name for path in tmp_path.iterdir()} == {"cube.off", "smooth.ply", "report.json", "smooth.native"}
+
+
+def test_json_and_quiet(orbiframe, small, tmp_path):
+    ran = orbiframe("fit", *small, "-o", tmp_path / "a.ply", "--json")
+    assert json.loads(ran.out)["fit"]["basis"] == "gaussian"
+    assert orbiframe("fit", *small, "-o", tmp_path / "b.ply", "--quiet") == (0, "", "")
+    assert (tmp_path / "a.ply").read_bytes() == (tmp_path / "b.ply").read_bytes()
+
+
+def test_a_configuration_file_and_overrides(orbiframe, cube, tmp_path):
+    config = tmp_path / "my.toml"
+    config.write_text("[basis]\nsize = 50\n[output]\nrefine = 2\n")
+    ran = orbiframe("fit", cube, "-o", tmp_path / "a.ply", "--config", config, "--set", "basis.size=40", "--json")
+    report = json.loads(ran.out)
+    assert (report["fit"]["size"], report["output"]["faces"]) == (40, 12 * 4)
+
+
+def test_a_plugin_file_takes_part(orbiframe, small, tmp_path):
+    (tmp_path / "my_plain_fitter.py").write_text(
+        """
+from orbiframe import Component, Fitter, hookimpl
+@hookimpl
+def orbiframe_components():
+    return [Component("fitter", "plain", "my_plain_fitter:Plain", "least squares without fairing")]
+class Plain(Fitter):
+    def fit(self, basis, samples):
+        import numpy as np
+        matrix = basis.design_matrix(samples.points).toarray()
+        return np.linalg.lstsq(matrix, samples.values, rcond=None)[0]
+"""
+    )
+    config = tmp_path / "my.toml"
+    config.write_text("plugins = ['./my_plain_fitter.py']\n[fitter]\nname = 'plain'\n")
+    assert orbiframe("fit", *small, "-o", tmp_path / "a.ply", "--config", config).status == 0
+
+
+@pytest.fixture
+def _no_fit(monkeypatch):
+    def fit(*arguments):
+        raise AssertionError("the long work has begun")
+
+    monkeypatch.setattr(pipeline, "fit", fit)
+
+
+@pytest.mark.usefixtures("_no_fit")
+@pytest.mark.parametrize(
+    ("arguments", "status", "said"),
+    [
+        (["-o", "a.plyy"], 1, "'.plyy'"),
+        (["-o", "absent/a.ply"], 1, "there is no folder"),
+        (["-o", "a.ply", "--report", "absent/r.json"], 1, "there is no folder"),
+        (["-o", "a.ply", "--save", "absent/s"], 1, "there is no folder"),
+        (["-o", "cube.off"], 2, "the input itself"),
+        (["-o", "a.ply", "--report", "cube.off"], 2, "the input itself"),
+        (["-o", "a.ply", "--size", "many"], 2, "invalid int value: 'many'"),
+        (["-o", "a.ply", "--refine", "0"], 2, "output.refine = 0"),
+        (["-o", "a.ply", "--tolerance", "-1"], 2, "output.tolerance = -1"),
+        (["-o", "a.ply", "--set", "basis.siez=3"], 2, "Did you mean 'size'?"),
+        (["-o", "a.ply", "--set", "basis.name=gausian"], 2, "Did you mean 'gaussian'?"),
+        (["-o", "a.ply", "--config", "absent.toml"], 2, "absent.toml cannot be read"),
+    ],
+)
+def test_what_is_wrong_is_said_before_the_work(orbiframe, cube, tmp_path, monkeypatch, arguments, status, said):
+    monkeypatch.chdir(tmp_path)
+    before = cube.read_bytes()
+    ran = orbiframe("fit", "cube.off", *arguments)
+    assert ran.status == status
+    assert said in ran.err
+    assert ran.out == ""
+    assert cube.read_bytes() == before
+
+
+def test_a_mesh_with_a_hole_is_refused_in_one_sentence(orbiframe, cube, tmp_path):
+    lines = cube.read_text().splitlines()
+    cube.write_text("\n".join([lines[0], "8 5 12", *lines[2:-1]]) + "\n")
+    ran = orbiframe("fit", cube, "-o", tmp_path / "a.ply")
+    assert ran.status == 1
+    assert ran.err.startswith("orbiframe: ")
+    assert "4 open edges" in ran.err
+    assert len(ran.err.splitlines()) == 1
+    assert not (tmp_path / "a.ply").exists()
+
+
+def test_progress_is_shown_on_a_terminal_only():
+    terminal = SimpleNamespace(isatty=lambda: True, flush=lambda: None, text=[])
+    terminal.write = terminal.text.append
+    progress = Progress(terminal)
+    progress("map", None)
+    progress("map", 1.25)
+    assert "".join(terminal.text).replace("\r", "\n").splitlines() == ["map …", "map                1.25 s"]
+    for silent in (Progress(file := io.StringIO()), Progress(terminal, quiet=True)):
+        terminal.text.clear()
+        silent("map", None)
+        silent("map", 1.0)
+        assert (file.getvalue(), terminal.text) == ("", [])
+
+
+REPORT = {
+    "surface": {"name": "closed, orientable, genus 2, 1 component", "euler_characteristic": -2},
+    "geometry": "h2",
+    "group": {"source": "mesh", "patches": 1, "relation_defect": 2.5e-15},
+    "map": {"triangles": 400, "not_positive": 0, "angle_distortion": {"median": 1.1, "p95": 1.5, "max": float("inf")}},
+    "fit": {"basis": "gaussian", "size": 100, "samples": 900, "rms": 1e-3, "max": 5e-3},
+    "output": {"vertices": 800, "faces": 1600},
+    "seconds": {"map": 1.5, "fit": 0.25},
+}
+
+
+def test_the_summary_says_what_came_out():
+    text = summary(REPORT)
+    for words in (
+        "genus 2",
+        "h2",
+        "1 patch,",
+        "2.5e-15",
+        "median 1.10",
+        "100 functions",
+        "1.00e-03",
+        "800 vertices",
+        "1.8 (",
+    ):
+        assert words in text
+
+
+def test_a_report_is_written_whole_or_not_at_all(tmp_path):
+    path = tmp_path / "report.json"
+    write_report(path, REPORT)
+    first = path.read_text()
+    assert json.loads(first)["map"]["angle_distortion"]["max"] is None
+    with pytest.raises(TypeError):
+        write_report(path, {"surface": object()})
+    assert path.read_text() == first
+    assert list(tmp_path.iterdir()) == [path]
+    assert json_text({"a": (1, float("nan"))}).split() == ["{", '"a":', "[", "1,", "null", "]", "}"]
