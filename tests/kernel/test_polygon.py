@@ -126,7 +126,7 @@ def test_discs_meet_the_polygon_where_sampled_points_say_so():
     polygon = standard(-2, True)
     rng = np.random.default_rng(3)
     centres = H2.from_polar(rng.uniform(0, 5, 400), rng.uniform(-4, 4, 400))
-    on_sides = H2.geodesic(polygon.vertices, polygon.heads, np.linspace(0, 1, 2001)[:, None]).reshape(-1, 3)
+    on_sides = H2.geodesic(polygon.vertices, polygon.heads, np.linspace(0, 1, 201)[:, None]).reshape(-1, 3)
     distance = H2.distance(centres[:, None], on_sides).min(axis=1)
     distance[(centres @ polygon.sides.T >= 0).all(axis=1)] = 0
     radius = 0.7
