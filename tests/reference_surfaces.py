@@ -154,8 +154,13 @@ def with_labels(atlas: Atlas, label: np.ndarray) -> tuple[np.ndarray, Atlas]:
 
 
 def in_space(orbifold: Orbifold, x: np.ndarray) -> np.ndarray:
-    """Three smooth functions on X/H at points of patch 0: sums of exp(-3 c) over the group about three fixed points."""
+    """Three smooth functions on X/H at points of patch 0: sums of exp(-3 c) over the group about three fixed points.
+
+    On the sphere the points themselves.
+    """
     geometry = orbifold.geometry
+    if orbifold.euler_characteristic == 2:
+        return x
     about = geometry.from_polar([0.2, 0.5, 0.6], [0.3, 2.2, 4.4])
     group = orbifold.lifts(0, 6.0)[1]
     images = np.einsum("gij,pj->pgi", group, about)
