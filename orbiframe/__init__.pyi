@@ -1,0 +1,44 @@
+"""The public names of orbiframe, each with the module it lives in; `__init__.py` reads this list."""
+
+from orbiframe.atlas import Atlas as Atlas, Points as Points
+from orbiframe.basis import Basis as Basis, DifferentiableBasis as DifferentiableBasis, OrbitSumBasis as OrbitSumBasis
+from orbiframe.errors import (
+    ConfigError as ConfigError,
+    FitError as FitError,
+    FormatError as FormatError,
+    GeometryError as GeometryError,
+    MapError as MapError,
+    OrbiframeError as OrbiframeError,
+    PluginError as PluginError,
+    TopologyError as TopologyError,
+    UsageError as UsageError,
+)
+from orbiframe.fitter import Fitter as Fitter
+from orbiframe.geometry import Geometry as Geometry
+from orbiframe.group import Group as Group
+from orbiframe.motion import Motion as Motion
+from orbiframe.orbifold import Orbifold as Orbifold
+from orbiframe.plugin import Component as Component, hookimpl as hookimpl
+from orbiframe.polygon import FundamentalPolygon as FundamentalPolygon, regular_polygon as regular_polygon
+from orbiframe.polygon_group import PolygonGroup as PolygonGroup
+from orbiframe.polyhedron import Polyhedron as Polyhedron
+from orbiframe.quadrature import triangle_points as triangle_points, triangle_rule as triangle_rule
+from orbiframe.samples import Samples as Samples
+from orbiframe.spacing import (
+    Graph as Graph,
+    Spacing as Spacing,
+    curve_order as curve_order,
+    dijkstra_forest as dijkstra_forest,
+    edge_graph as edge_graph,
+    farthest_points as farthest_points,
+)
+from orbiframe.topology import (
+    SurfaceType as SurfaceType,
+    fan_labels as fan_labels,
+    reversed_faces as reversed_faces,
+    surface_type as surface_type,
+)
+from orbiframe.triangulation import Triangulation as Triangulation
+from orbiframe.word import Word as Word, standard_word as standard_word
+
+__version__: str
