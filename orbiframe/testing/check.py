@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from orbiframe.options import options_of
 from orbiframe.plugin import Component
 from orbiframe.registry import Registry, resolve
 from orbiframe.testing import component_laws
-from orbiframe.testing.kit import Verdict, has_laws, laws_of, tried
+from orbiframe.testing.kit import Verdict, bound, has_laws, laws_of, tried
 from orbiframe.testing.lab import Lab
+
+SMALL = 40
 
 
 def check(component: Component, registry: Registry) -> list[Verdict]:
@@ -26,9 +30,13 @@ def check(component: Component, registry: Registry) -> list[Verdict]:
 
 
 def equipments(component: Component, registry: Registry) -> Iterator[dict[str, Any]]:
-    """What a lab for a component needs, once for every suffix of a reader or writer."""
+    """What a lab for a component needs, once for every suffix of a reader or writer.
+
+    A basis that can be of any size is tried small, as the reference triangulations are.
+    """
     if component.kind not in ("reader", "writer"):
-        yield {}
+        sized = component.kind == "basis" and any(option.name == "size" for option in options_of(resolve(component)))
+        yield {"params": {"size": SMALL}} if sized else {}
     for suffix in component.suffixes:
         yield {"suffix": suffix, "counterpart": counterpart(component, suffix, registry)}
 
@@ -42,9 +50,8 @@ def counterpart(component: Component, suffix: str, registry: Registry) -> Callab
 
 
 def _on(component: Component, equipment: dict[str, Any]) -> Iterator[Verdict]:
+    target = bound(resolve(component), equipment.get("params", {}))
     for law in laws_of(component.kind).laws:
         with TemporaryDirectory() as folder:
-            verdict = tried(law, resolve(component), Lab(Path(folder), **equipment))
-        yield Verdict(
-            " ".join([verdict.law, *filter(None, [equipment.get("suffix")])]), verdict.statement, verdict.error
-        )
+            verdict = tried(law, target, Lab(Path(folder), **equipment))
+        yield replace(verdict, law=" ".join([verdict.law, *filter(None, [equipment.get("suffix")])]))

@@ -10,13 +10,15 @@ from orbiframe.polyhedron import Polyhedron
 
 
 def reference_polyhedra() -> Mapping[str, Polyhedron]:
-    """Closed polyhedra by name, from the sphere to the projective plane, with triangles, quads and larger faces."""
+    """Closed polyhedra by name: triangles, quads, larger faces; Euler characteristics of each sign; one-sided ones."""
     return {
         "tetrahedron": _tetrahedron(),
         "cube": _cube(),
         "prism": _prism(5),
         "torus": _seven_vertex_torus(),
+        "double torus": _double_torus(),
         "projective plane": _six_vertex_projective_plane(),
+        "Klein bottle": _klein_bottle(8, 5),
     }
 
 
@@ -53,3 +55,36 @@ def _six_vertex_projective_plane() -> Polyhedron:
     cap = [[0, i, i % 5 + 1] for i in range(1, 6)]
     rim = [[i, i % 5 + 1, (i + 2) % 5 + 1] for i in range(1, 6)]
     return Polyhedron.from_faces(vertices, cap + rim)
+
+
+def _klein_bottle(along: int, across: int) -> Polyhedron:
+    """A grid of quads whose ends are glued with a turn, as the immersed bottle that is a twisted figure eight."""
+    u, v = np.meshgrid(np.arange(along) / along, np.arange(across) / across, indexing="ij")
+    half, turn = np.pi * u, 2 * np.pi * v
+    eight = np.cos(half) * np.sin(turn) - np.sin(half) * np.sin(2 * turn)
+    lift = np.sin(half) * np.sin(turn) + np.cos(half) * np.sin(2 * turn)
+    vertices = np.stack([(2 + eight) * np.cos(2 * half), (2 + eight) * np.sin(2 * half), lift], axis=-1)
+
+    def corner(i: int, j: int) -> int:
+        return i * across + j % across if i < along else -j % across
+
+    cells = [(i, j) for i in range(along) for j in range(across)]
+    faces = [[corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)] for i, j in cells]
+    return Polyhedron.from_faces(vertices.reshape(-1, 3), faces)
+
+
+def _double_torus() -> Polyhedron:
+    """A plate of unit cubes, five by three, with two of them left out: the sphere with two handles."""
+    cells = {(i, j) for i in range(5) for j in range(3)} - {(1, 1), (3, 1)}
+    quads = [
+        [(i, j, z), (i + 1, j, z), (i + 1, j + 1, z), (i, j + 1, z)][:: 2 * z - 1] for i, j in cells for z in (0, 1)
+    ]
+    for i, j in sorted(cells):
+        ring = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
+        for side, step in enumerate([(0, -1), (1, 0), (0, 1), (-1, 0)]):
+            if (i + step[0], j + step[1]) not in cells:
+                a, b = ring[side], ring[(side + 1) % 4]
+                quads.append([(*a, 0), (*b, 0), (*b, 1), (*a, 1)])
+    corners = sorted({corner for quad in quads for corner in quad})
+    number = {corner: index for index, corner in enumerate(corners)}
+    return Polyhedron.from_faces(np.array(corners, dtype=float), [[number[c] for c in quad] for quad in sorted(quads)])

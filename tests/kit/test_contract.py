@@ -9,7 +9,7 @@ from orbiframe.plugin import KINDS, Component
 from orbiframe.registry import Registry, resolve
 from orbiframe.testing import Lab, component_laws, contract_tests, laws_of
 from orbiframe.testing.check import check, equipments
-from orbiframe.testing.kit import has_laws, tried
+from orbiframe.testing.kit import bound, has_laws, tried
 
 LAWFUL_KINDS = ("geometry", "group", "basis", "fitter", "reader", "writer")
 REGISTRY = Registry.discover()
@@ -31,7 +31,7 @@ def component_cases():
 
 
 def suffix(equipment: dict) -> list[str]:
-    return [equipment["suffix"]] if equipment else []
+    return [equipment["suffix"]] if "suffix" in equipment else []
 
 
 def mutant_cases():
@@ -59,7 +59,7 @@ def test_every_component_keeps_the_laws_of_components(component, law):
 
 @pytest.mark.parametrize(("component", "equipment", "law"), component_cases())
 def test_every_component_keeps_the_laws_of_its_kind(component, equipment, law, tmp_path):
-    law(resolve(component), Lab(tmp_path, **equipment))
+    law(bound(resolve(component), equipment.get("params", {})), Lab(tmp_path, **equipment))
 
 
 @pytest.mark.parametrize(("kind", "name"), mutant_cases())
@@ -75,7 +75,8 @@ def test_every_mutant_is_rejected(kind, name, tmp_path):
 def rejected(law, mutation, component: Component, folder) -> bool:
     equipment = next(iter(equipments(component, REGISTRY)))
     folder.mkdir()
-    return tried(law, mutation(resolve(component)), Lab(folder, **equipment)).error is not None
+    broken = mutation(bound(resolve(component), equipment.get("params", {})))
+    return tried(law, broken, Lab(folder, **equipment)).error is not None
 
 
 MALFORMED = {

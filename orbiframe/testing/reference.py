@@ -1,0 +1,36 @@
+"""Reference triangulations of X/H, made by the installed parametrizers from the reference polyhedra."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from types import MappingProxyType
+
+from orbiframe.diagonals import triangulated
+from orbiframe.refinement import refine
+from orbiframe.registry import Registry
+from orbiframe.testing.polyhedra import reference_polyhedra
+from orbiframe.triangulation import Triangulation
+
+# Geometry and parametrizer for the sign of the Euler characteristic of each polyhedron, and how fine it becomes.
+RECIPES = {
+    "tetrahedron": ("s2", "sphere", 6),
+    "projective plane": ("s2", "sphere", 5),
+    "torus": ("e2", "harmonic", 5),
+    "Klein bottle": ("e2", "harmonic", 2),
+    "double torus": ("h2", "harmonic", 2),
+}
+
+
+@cache
+def reference_triangulations() -> Mapping[str, Triangulation]:
+    """Small triangulations of X/H by name: both kinds of sphere and of plane, and one hyperbolic surface."""
+    registry = Registry.discover(only=["geometries", "parametrizers"])
+    return MappingProxyType({name: _triangulation(name, registry) for name in RECIPES})
+
+
+def _triangulation(name: str, registry: Registry) -> Triangulation:
+    geometry, parametrizer, density = RECIPES[name]
+    mesh = refine(triangulated(reference_polyhedra()[name]), density).polyhedron
+    made: Triangulation = registry.load("parametrizer", parametrizer)(mesh, registry.load("geometry", geometry)(), None)
+    return made
