@@ -1,0 +1,38 @@
+# Everything runs in a virtual environment of its own; needed: Python 3.11 or later with venv and pip, and make.
+
+PYTHON ?= python3
+VENV ?= .venv
+BIN = $(VENV)/bin
+PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+
+.PHONY: demo test lint constraints clean
+
+demo: $(VENV)/user  ## one smooth surface from a mesh of genus 2
+	$(BIN)/orbiframe fit datasets/plate_genus2.off -o plate_genus2_smooth.ply
+
+test: $(VENV)/developer  ## all tests, with Open3D
+	$(BIN)/python -m pytest
+
+lint: $(VENV)/developer  ## style, types, and who imports whom
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+constraints: $(VENV)/developer  ## the versions in use become the versions to install
+	$(BIN)/python -m pip freeze --exclude-editable > constraints.txt
+
+clean:
+	rm -rf $(VENV)
+
+$(VENV)/python:
+	$(PYTHON) -m venv $(VENV)
+	touch $@
+
+$(VENV)/user: pyproject.toml constraints.txt | $(VENV)/python
+	$(PIP) --editable .
+	touch $@
+
+$(VENV)/developer: pyproject.toml constraints.txt | $(VENV)/python
+	$(PIP) --editable ".[dev,open3d]"
+	touch $@ $(VENV)/user
