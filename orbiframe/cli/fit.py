@@ -18,13 +18,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("-o", "--output", metavar="OUT", type=Path, required=True, help="the smooth surface as a fine triangle mesh")
     add("--config", metavar="FILE.toml", type=Path, help="components and options of the steps")
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=200")
-    add("--size", metavar="N", type=int, help="number of basis functions (basis.size)")
-    add(
-        "--tolerance",
-        metavar="T",
-        type=float,
-        help="largest rms error, of the bounding-box diagonal (output.tolerance)",
-    )
+    size = parser.add_mutually_exclusive_group().add_argument
+    size("--size", metavar="N", type=int, help="number of basis functions (basis.size)")
+    size("--tolerance", metavar="T", type=float, help="largest rms error, of the box's diagonal (output.tolerance)")
     add("--refine", metavar="K", type=int, help="K*K output triangles for each input triangle (output.refine)")
     add("--report", metavar="FILE.json", type=Path, help="write the report")
     add("--save", metavar="FILE", type=Path, help="write the surface itself, to be evaluated anywhere")

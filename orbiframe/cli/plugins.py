@@ -7,7 +7,7 @@ import json
 from collections.abc import Iterator
 from dataclasses import asdict
 
-from orbiframe.errors import UsageError
+from orbiframe.errors import PluginError, UsageError
 from orbiframe.plugin import KINDS, Component
 from orbiframe.registry import Registry, resolve
 
@@ -28,7 +28,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     """List the components and the plugins that could not be loaded."""
     shown = [pair for pair in registry.declarations() if args.kind in (None, pair[0].kind)]
     if args.json:
-        print(json.dumps(_data(shown, registry, args.options), indent=2))
+        print(json.dumps(_data(shown, registry, args.options), indent=2, default=str))
         return 0
     for line in _table(shown, args.options):
         print(line)
@@ -80,7 +80,11 @@ def _table(shown: list[tuple[Component, str]], options: bool) -> Iterator[str]:
 def _option_lines(component: Component) -> Iterator[str]:
     from orbiframe.options import options_of
 
-    target = resolve(component)
+    try:
+        target = resolve(component)
+    except PluginError as error:
+        yield f"    {error}"
+        return
     yield f"    {(target.__doc__ or '').strip().partition(chr(10))[0]}"
     for option in options_of(target):
         value = "required" if option.required else repr(option.default)
