@@ -2,6 +2,7 @@
 
 from orbiframe.atlas import Atlas as Atlas, Points as Points
 from orbiframe.basis import Basis as Basis, DifferentiableBasis as DifferentiableBasis, OrbitSumBasis as OrbitSumBasis
+from orbiframe.confinement import confined_read as confined_read, confined_write as confined_write
 from orbiframe.errors import (
     ConfigError as ConfigError,
     FitError as FitError,

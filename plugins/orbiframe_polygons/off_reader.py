@@ -53,9 +53,7 @@ def read(path: Path) -> Polyhedron:
     split = header.row + header.vertices
     vertices, normals, colors = _vertices(text.lines(header.row, split), header)
     offsets, tail, face_colors = _faces(text.lines(split, len(text)), header.vertices)
-    return Polyhedron.from_corners(
-        vertices, offsets, tail, normals=normals, colors=colors, face_colors=face_colors
-    )
+    return Polyhedron.from_corners(vertices, offsets, tail, normals=normals, colors=colors, face_colors=face_colors)
 
 
 def _header(text: Text) -> Header:

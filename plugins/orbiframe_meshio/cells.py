@@ -1,0 +1,111 @@
+"""Cells: meshio's blocks of cells of one kind, to polygons and back; to be called in a process of its own."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import meshio
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe import FormatError, Polyhedron
+
+Ints = NDArray[np.intp]
+
+POLYGONS = {"triangle", "quad", "polygon"}
+BELOW = {"vertex", "line"}
+# Where the dialect that meshio would choose is not what programs expect, or does not hold faces of several sizes.
+DIALECTS = {".msh": "gmsh22"}
+ENTITY = re.compile(rb"<!(ENTITY|DOCTYPE)")
+# Relative to the bounding box: formats that round coordinates to float32 pass, a lost digit more does not.
+ROUNDING = 1e-6
+
+
+def polyhedron_of(path: Path) -> Polyhedron:
+    """The polygons of a file. Raises FormatError for cells that are no polygons, and where meshio warns or ends."""
+    _require_no_entities(path)
+    with _strict(path):
+        mesh = meshio.read(path)
+    return _polyhedron(path, mesh)
+
+
+def save(path: Path, polyhedron: Polyhedron) -> None:
+    """Write a file and read it again. Raises FormatError where that is not the same polyhedron."""
+    mesh = meshio.Mesh(polyhedron.vertices, list(_blocks(polyhedron)))
+    with _strict(path):
+        meshio.write(path, mesh, file_format=DIALECTS.get(path.suffix.lower()))
+    _require_same(path, polyhedron, polyhedron_of(path))
+
+
+def _polyhedron(path: Path, mesh: Any) -> Polyhedron:
+    kinds = {block.type for block in mesh.cells}
+    other = sorted(kinds - POLYGONS - BELOW)
+    if other:
+        raise FormatError(
+            f"{path}: found cells of the kind {', '.join(other)}; only triangles, quads and polygons are read"
+        )
+    blocks = [np.asarray(block.data) for block in mesh.cells if block.type in POLYGONS and len(block.data)]
+    if not blocks:
+        raise FormatError(f"{path}: the file holds no triangles, quads or polygons")
+    sizes = np.concatenate([np.full(len(block), block.shape[1]) for block in blocks])
+    tail = np.concatenate([block.ravel() for block in blocks]).astype(np.intp)
+    _require_range(path, tail, len(mesh.points))
+    return Polyhedron.from_corners(_points(path, mesh.points), np.concatenate([[0], np.cumsum(sizes)]), tail)
+
+
+def _points(path: Path, points: NDArray[Any]) -> NDArray[np.float64]:
+    """Points in space; a plane file has the height 0."""
+    table = np.asarray(points, dtype=np.float64)
+    if table.ndim != 2 or table.shape[1] not in (2, 3):
+        raise FormatError(f"{path}: the table of points is {table.shape}; two or three coordinates are required")
+    if not np.isfinite(table).all():
+        raise FormatError(f"{path}: point {np.flatnonzero(~np.isfinite(table).all(axis=1))[0]} is not finite")
+    return np.pad(table, ((0, 0), (0, 3 - table.shape[1])))
+
+
+def _require_range(path: Path, tail: Ints, count: int) -> None:
+    bad = np.flatnonzero((tail < 0) | (tail >= count))
+    if len(bad):
+        raise FormatError(f"{path}: a face names vertex {tail[bad[0]]}, but the vertices are 0 to {count - 1}")
+
+
+def _blocks(polyhedron: Polyhedron) -> Iterator[tuple[str, Ints]]:
+    """Runs of faces of one size, so that the order of faces is kept."""
+    sizes = polyhedron.face_sizes
+    starts = np.flatnonzero(np.diff(sizes, prepend=-1)).tolist()
+    for first, last in zip(starts, [*starts[1:], len(sizes)], strict=True):
+        size = int(sizes[first])
+        corners = polyhedron.tail[polyhedron.offsets[first] : polyhedron.offsets[last]]
+        yield {3: "triangle", 4: "quad"}.get(size, "polygon"), corners.reshape(-1, size)
+
+
+def _require_same(path: Path, written: Polyhedron, found: Polyhedron) -> None:
+    same = np.array_equal(written.offsets, found.offsets) and np.array_equal(written.tail, found.tail)
+    if not same or np.abs(written.vertices - found.vertices).max() > ROUNDING * written.diagonal:
+        raise FormatError(f"{path}: meshio cannot write this polyhedron without loss; choose OFF, OBJ, PLY or VTU")
+
+
+def _require_no_entities(path: Path) -> None:
+    with path.open("rb") as file:
+        start = file.read(2**16)
+    if start.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<") and ENTITY.search(start):
+        raise FormatError(f"{path}: XML with a document type or entities is not read; take them out")
+
+
+@contextlib.contextmanager
+def _strict(path: Path) -> Iterator[None]:
+    """What meshio prints is a complaint, and its end of the process an error: both become FormatError."""
+    words = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(words), contextlib.redirect_stderr(words):
+            yield
+    except (Exception, SystemExit) as error:
+        said = words.getvalue().strip() or f"{type(error).__name__}: {error}"
+        raise FormatError(f"{path}: meshio failed: {said}") from error
+    if words.getvalue().strip():
+        raise FormatError(f"{path}: meshio is not sure of this file: {words.getvalue().strip()}")

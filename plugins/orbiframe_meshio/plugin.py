@@ -1,0 +1,34 @@
+"""The formats of meshio that hold surfaces, beside those that have readers of their own."""
+
+from __future__ import annotations
+
+from orbiframe.plugin import Component, hookimpl
+
+# meshio knows more suffixes: those are left out whose surfaces it cannot write and read again without loss, whose
+# library is not installed with it, and archives.
+SUFFIXES = (
+    ".vtk",
+    ".vtu",
+    ".msh",
+    ".mesh",
+    ".meshb",
+    ".inp",
+    ".avs",
+    ".mdpa",
+    ".vol",
+    ".dat",
+    ".tec",
+    ".post",
+    ".dato",
+)
+
+
+@hookimpl
+def orbiframe_components() -> list[Component]:
+    """One reader and one writer for all these formats; as `format` they serve every suffix that meshio knows."""
+    return [
+        Component("reader", "meshio", "orbiframe_meshio.reader:read", "VTK, Gmsh, Medit and others", suffixes=SUFFIXES),
+        Component(
+            "writer", "meshio", "orbiframe_meshio.writer:write", "VTK, Gmsh, Medit and others", suffixes=SUFFIXES
+        ),
+    ]

@@ -1,0 +1,17 @@
+"""The formats of Open3D that neither the polygon formats nor meshio cover."""
+
+from __future__ import annotations
+
+from orbiframe.plugin import Component, hookimpl
+
+EXTRA = "orbiframe[open3d]"
+SUFFIXES = (".glb", ".gltf", ".fbx")
+
+
+@hookimpl
+def orbiframe_components() -> list[Component]:
+    """One reader and one writer; as `format` they serve every suffix that Open3D knows."""
+    return [
+        Component("reader", "open3d", "orbiframe_open3d.reader:read", "glTF and FBX, triangles", EXTRA, SUFFIXES),
+        Component("writer", "open3d", "orbiframe_open3d.writer:write", "glTF and FBX, triangles", EXTRA, SUFFIXES),
+    ]

@@ -1,0 +1,64 @@
+"""Triangles: Open3D's meshes to polyhedra and back; to be called in a process of its own."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from orbiframe import FormatError, PluginError, Polyhedron
+
+SYSTEM = "apt-get install libusb-1.0-0 libgl1 libegl1 libx11-6 libudev1"
+
+
+def polyhedron_of(path: Path) -> Polyhedron:
+    """The triangles of a file; what Open3D splits for normals and pictures is joined again where it coincides."""
+    o3d = _open3d()
+    _require_own_files(path)
+    mesh = o3d.t.io.read_triangle_mesh(str(path))
+    if "positions" not in mesh.vertex or "indices" not in mesh.triangle or not len(mesh.triangle.indices):
+        raise FormatError(f"{path}: Open3D finds no triangles; is the file what its suffix says?")
+    points = mesh.vertex.positions.numpy()
+    tail = mesh.triangle.indices.numpy().ravel().astype(np.intp)
+    if not np.isfinite(points).all() or tail.min() < 0 or tail.max() >= len(points):
+        raise FormatError(f"{path}: a coordinate is not finite, or a face names a vertex that is not there")
+    # Adding 0 makes -0 the same as 0.
+    vertices, place = np.unique(points.astype(np.float64) + 0.0, axis=0, return_inverse=True)
+    return Polyhedron.from_faces(vertices, place.ravel()[tail].reshape(-1, 3))
+
+
+def save(path: Path, polyhedron: Polyhedron) -> None:
+    """Write a file. Raises FormatError where Open3D says that it did not."""
+    o3d = _open3d()
+    vertices = o3d.core.Tensor(polyhedron.vertices.astype(np.float32))
+    mesh = o3d.t.geometry.TriangleMesh(vertices, o3d.core.Tensor(polyhedron.triangles.astype(np.int64)))
+    if not o3d.t.io.write_triangle_mesh(str(path), mesh):
+        raise FormatError(f"{path}: Open3D cannot write this file; it writes glb, gltf, fbx, ply, obj, off and stl")
+
+
+def _open3d() -> Any:
+    try:
+        import open3d
+    except ModuleNotFoundError as error:
+        raise PluginError('this format needs the package open3d: pip install "orbiframe[open3d]"') from error
+    except (ImportError, OSError) as error:
+        raise PluginError(
+            f"open3d cannot be loaded ({error}); it needs system libraries: on Debian, {SYSTEM}"
+        ) from error
+    return open3d
+
+
+def _require_own_files(path: Path) -> None:
+    """A glTF text may name further files; only those in its own folder are allowed."""
+    if path.suffix.lower() != ".gltf":
+        return
+    try:
+        tree = json.loads(path.read_bytes())
+        names = [str(part["uri"]) for key in ("buffers", "images") for part in tree.get(key, []) if "uri" in part]
+    except (ValueError, TypeError, AttributeError, RecursionError) as error:
+        raise FormatError(f"{path}: this is no glTF: {error}") from error
+    for name in names:
+        if not name.startswith("data:") and (Path(name).name != name or ":" in name or "%" in name):
+            raise FormatError(f"{path}: the file names {name[:80]!r}; only files in its own folder are opened")

@@ -1,0 +1,27 @@
+"""Writer: a triangulated polyhedron to a file that Open3D can write."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+from orbiframe import FormatError, Polyhedron, confined_write
+
+
+def write(path: Path, polyhedron: Polyhedron, *, seconds: float = 600.0) -> None:
+    """Write triangles, with coordinates as float32.
+
+    seconds: the most time that it may take. Raises FormatError for faces that are no triangles, and where Open3D fails;
+    PluginError where it is not installed or lacks a system library. Normals and colours are left out, with a warning.
+    """
+    larger = np.flatnonzero(polyhedron.face_sizes != 3)
+    if len(larger):
+        raise FormatError(
+            f"{path}: this format holds triangles only, but face {larger[0]} has {polyhedron.face_sizes[larger[0]]} "
+            f"corners ({len(larger)} such faces); write OFF, OBJ or PLY, or triangulate the polyhedron first"
+        )
+    if any(table is not None for table in (polyhedron.normals, polyhedron.colors, polyhedron.face_colors)):
+        warnings.warn(f"{path.name}: normals and colours are left out; PLY keeps them", stacklevel=2)
+    confined_write("orbiframe_open3d.triangles:save", path, polyhedron, seconds=seconds)
