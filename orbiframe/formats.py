@@ -43,7 +43,7 @@ def read(path: Path, registry: Components, *, format: str | None = None, size_li
     """
     path = Path(path)
     require_readable(path, size_limit)
-    reader = registry.load("reader", _name(path, registry, "reader", format))
+    reader = registry.load("reader", component_name(path, registry, "reader", format))
     return require_sound(_guarded(path, "reading", reader, path), path)
 
 
@@ -59,7 +59,7 @@ def write(path: Path, polyhedron: Polyhedron, registry: Components, *, format: s
     target = Path(os.path.realpath(path)) if path.is_symlink() else path
     require_writable(target)
     require_sound(polyhedron, path)
-    writer = registry.load("writer", _name(path, registry, "writer", format))
+    writer = registry.load("writer", component_name(path, registry, "writer", format))
     with _folder_beside(target) as folder:
         made = Path(folder) / path.name
         _guarded(path, "writing", writer, made, polyhedron)
@@ -69,8 +69,12 @@ def write(path: Path, polyhedron: Polyhedron, registry: Components, *, format: s
 # ---- which component ----------------------------------------------------------------------------------------------
 
 
-def _name(path: Path, registry: Components, kind: str, format: str | None) -> str:
-    """The name of the component for a file: `format` if given, else the only one that declares the suffix."""
+def component_name(path: Path, registry: Components, kind: str, format: str | None) -> str:
+    """The name of the reader or writer for a file: `format` if given, else the only one that declares the suffix.
+
+    Raises FormatError for a suffix that none declares, PluginError for one that several do, UsageError for an unknown
+    format.
+    """
     if format is not None:
         return registry.component(kind, format).name
     suffix = path.suffix.lower()

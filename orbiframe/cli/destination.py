@@ -7,20 +7,14 @@ from pathlib import Path
 
 from orbiframe.errors import FormatError, UsageError
 from orbiframe.registry import Registry
-from orbiframe.suggestion import did_you_mean
 
 
 def require_destination(path: Path, registry: Registry, format: str | None = None) -> None:
-    """Raise FormatError unless some writer takes the file (its suffix, or the named format) and its folder exists."""
+    """Raise FormatError unless a writer takes the file (by its suffix, or the named format) and it can be made."""
+    from orbiframe.formats import component_name
+
     require_folder(path)
-    if format is not None:
-        registry.component("writer", format)
-        return
-    suffixes = sorted({suffix for writer in registry.components("writer") for suffix in writer.suffixes})
-    if not path.name.lower().endswith(tuple(suffixes)):
-        known = ", ".join(suffixes) or "none"
-        hint = did_you_mean(path.suffix.lower(), suffixes)
-        raise FormatError(f"{path}: no writer for the suffix '{path.suffix}'; known: {known}.{hint}")
+    component_name(path, registry, "writer", format)
 
 
 def require_folder(path: Path) -> None:
