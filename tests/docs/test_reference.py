@@ -1,0 +1,123 @@
+"""The reference pages say what the program says."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from documents import ROOT, section, table_rows
+
+from orbiframe import FormatError, formats, pipeline
+from orbiframe.cli import plugin as commands
+from orbiframe.config import OPEN_NAMES, STEPS, Config, Output
+from orbiframe.options import options_of
+from orbiframe.registry import Registry
+
+REFERENCE = ROOT / "docs" / "reference"
+
+
+@pytest.fixture(scope="module")
+def registry() -> Registry:
+    found = Registry.discover()
+    found.register("commands", commands)
+    return found
+
+
+def unquoted(cell: str) -> str:
+    return cell.replace("`", "")
+
+
+def column(page: Path, heading: str) -> list[str]:
+    return [unquoted(row[0]) for row in table_rows(section(page, heading))]
+
+
+@pytest.mark.parametrize("command", ["fit", "info", "convert", "plugins"])
+def test_every_option_of_a_command_is_in_its_table(command, registry):
+    parser = argparse.ArgumentParser()
+    registry.load("command", command)(parser)
+    flags = [a.option_strings for a in parser._actions if a.option_strings and a.dest != "help"]
+    known = [", ".join(sorted(names, key=len)) for names in flags]
+    assert column(REFERENCE / "cli.md", f"orbiframe {command}") == known
+
+
+def test_every_command_has_a_section(registry):
+    for component in registry.components("command"):
+        section(REFERENCE / "cli.md", f"orbiframe {component.name}")
+
+
+@pytest.mark.parametrize("table", STEPS)
+def test_every_option_of_a_table_is_in_its_section(table, registry):
+    kind, key, default = STEPS[table]
+    rows = {unquoted(row[0]): unquoted(row[1]) for row in table_rows(section(REFERENCE / "config.md", table))}
+    assert rows.pop(key) == default
+    assert rows == _defaults(kind, default, registry)
+
+
+def _defaults(kind: str, name: str, registry: Registry) -> dict[str, str]:
+    """The options of the default component of a step; of all that the pipeline may choose, where it is open."""
+    chosen = {"parametrizer": list(pipeline.PARAMETRIZER.values())}.get(kind, []) if name in OPEN_NAMES else [name]
+    return {o.name: str(o.default) for name in chosen for o in options_of(registry.load(kind, name))}
+
+
+def test_every_option_of_the_output_is_in_its_section():
+    rows = {unquoted(row[0]): row[1] for row in table_rows(section(REFERENCE / "config.md", "output"))}
+    assert rows == {option.name: str(option.default).lower() for option in options_of(Output)}
+
+
+def test_every_suffix_is_in_the_table_of_formats(registry):
+    """Format, suffixes, and which of reading and writing there is."""
+    shown = {unquoted(row[0]): (set(unquoted(row[1]).split()), row[2]) for row in _formats()}
+    for kind, verb in (("reader", "read"), ("writer", "write")):
+        declared = {c.name: set(c.suffixes) for c in registry.components(kind)}
+        assert {name for name, (_, verbs) in shown.items() if verb in verbs} == set(declared)
+        for name, suffixes in declared.items():
+            assert suffixes <= shown[name][0]
+    for name, (suffixes, _) in shown.items():
+        both = [c.suffixes for kind in ("reader", "writer") for c in registry.components(kind) if c.name == name]
+        assert suffixes == {suffix for declared in both for suffix in declared}
+
+
+COLUMNS = {"normals": 4, "colors": 5, "face_colors": 6}
+
+
+@pytest.mark.filterwarnings("ignore:.*left out")
+@pytest.mark.parametrize("name", ["off", "obj", "ply", "stl"])
+def test_what_the_table_says_of_a_format_is_kept(name, registry, tmp_path):
+    row = next(row for row in _formats() if unquoted(row[0]) == name)
+    mesh = formats.read(ROOT / "datasets" / ("dodecahedron.off" if row[3] == "polygons" else "sphere.off"), registry)
+    grey = np.full((mesh.face_count, 3), 0.2)
+    full = replace(mesh, normals=mesh.vertices, colors=np.full_like(mesh.vertices, 0.6), face_colors=grey)
+    formats.write(tmp_path / f"full.{name}", full, registry)
+    found = formats.read(tmp_path / f"full.{name}", registry)
+    assert sorted(found.face_sizes) == sorted(mesh.face_sizes)
+    assert {key: "no" if getattr(found, key) is None else "yes" for key in COLUMNS} == {
+        key: row[column] for key, column in COLUMNS.items()
+    }
+
+
+@pytest.mark.parametrize("name", ["stl"])
+def test_a_format_of_triangles_refuses_polygons(name, registry, tmp_path):
+    mesh = formats.read(ROOT / "datasets" / "dodecahedron.off", registry)
+    with pytest.raises(FormatError):
+        formats.write(tmp_path / f"mesh.{name}", mesh, registry)
+
+
+def _formats() -> list[list[str]]:
+    return table_rows(section(REFERENCE / "formats.md", "Formats"))
+
+
+def test_every_key_of_the_report_is_in_its_table(registry):
+    config = Config.load(overrides=["basis.size=50"])
+    report = pipeline.fit(ROOT / "datasets" / "cube.off", config, registry).report
+    keys = [unquoted(row[0]) for row in table_rows((REFERENCE / "report.md").read_text())]
+    assert keys == list(_keys(report))
+
+
+def _keys(value: object, path: str = "") -> list[str]:
+    """The paths of all leaves of a report; tables with free names are leaves."""
+    if not isinstance(value, dict) or path in {"seconds", "versions"}:
+        return [path]
+    return [leaf for key, inner in value.items() for leaf in _keys(inner, f"{path}.{key}".lstrip("."))]
