@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import formats
+from orbiframe.bisection import Bisection, bisected, edge_length_for
 from orbiframe.config import Config
 from orbiframe.diagonals import triangulated
 from orbiframe.errors import FitError, MapError, TopologyError
 from orbiframe.geometry import Geometry
 from orbiframe.options import options_of
 from orbiframe.polyhedron import Polyhedron
-from orbiframe.refinement import Refinement, refine
 from orbiframe.registry import Registry
 from orbiframe.report import Deviation, report
 from orbiframe.samples import Samples
@@ -96,7 +96,7 @@ def _approximated(
     if tolerance is None:
         return _of_size(triangles, surface_type, config, registry, stages, size)
     size = _FIRST_SIZE
-    known: dict[int, tuple[Refinement, Triangulation]] = {}
+    known: dict[float, tuple[Bisection, Triangulation]] = {}
     while True:
         sized = config.with_options("basis", size=size)
         surface, samples, deviation = _of_size(triangles, surface_type, sized, registry, stages, size, known)
@@ -117,16 +117,16 @@ def _of_size(
     registry: Registry,
     stages: _Stages,
     size: int,
-    known: dict[int, tuple[Refinement, Triangulation]] | None = None,
+    known: dict[float, tuple[Bisection, Triangulation]] | None = None,
 ) -> tuple[OrbifoldSurface, Samples, Deviation]:
-    density = _working_density(triangles, size)
-    if known is None or density not in known:
-        refinement = stages("refinement", refine, triangles, density)
+    longest = _longest_edge(triangles, size)
+    if known is None or longest not in known:
+        refinement = stages("refinement", bisected, triangles, longest)
         triangulation = stages("map", _mapped, refinement.polyhedron, surface_type, config, registry)
         if known is not None:
-            known[density] = (refinement, triangulation)
+            known[longest] = (refinement, triangulation)
     else:
-        refinement, triangulation = known[density]
+        refinement, triangulation = known[longest]
     samples = stages("samples", coordinate_samples, triangulation)
     basis = stages("basis", config.component("basis", registry), triangulation.orbifold, triangulation)
     fitter = config.component("fitter", registry)()
@@ -157,10 +157,9 @@ def _size(config: Config, registry: Registry) -> int:
     return int(config.basis.options.get("size", options.get("size", 1000)))
 
 
-def _working_density(triangles: Polyhedron, size: int) -> int:
+def _longest_edge(triangles: Polyhedron, size: int) -> float:
     """How finely the mesh is refined for the map, so that samples and centres are dense enough for the basis."""
-    wanted = max(_LEAST_VERTICES, _VERTICES_PER_FUNCTION * size)
-    return max(1, int(np.ceil(np.sqrt(wanted / len(triangles.vertices)))))
+    return edge_length_for(triangles, max(_LEAST_VERTICES, _VERTICES_PER_FUNCTION * size))
 
 
 def _mapped(mesh: Polyhedron, surface_type: SurfaceType, config: Config, registry: Registry) -> Triangulation:

@@ -1,4 +1,4 @@
-"""Refinement: every triangle cut into k^2 triangles, and points found in them again."""
+"""Refinement: every triangle cut into k^2 triangles."""
 
 from __future__ import annotations
 
@@ -29,23 +29,6 @@ class Refinement:
     density: int
     face: Ints
     barycentric: Floats
-
-    def locate(self, face: Ints, barycentric: Floats) -> tuple[Ints, Floats]:
-        """The fine triangle (n,) and the barycentric coordinates in it (n, 3) of points of coarse triangles."""
-        k = self.density
-        scaled = np.asarray(barycentric, dtype=np.float64)[:, 1:] * k
-        cell = np.clip(np.floor(scaled), 0, k - 1).astype(np.intp)
-        over = cell.sum(axis=1) - (k - 1)
-        column = np.where(over > 0, np.maximum(cell[:, 0] - over, 0), cell[:, 0])
-        row = np.minimum(cell[:, 1], k - 1 - column)
-        u, v = scaled[:, 0] - column, scaled[:, 1] - row
-        down = (u + v > 1) & (column + row < k - 1)
-        grid = _grid(k)
-        fine = face * k * k + np.where(down, grid.down[column, row], grid.up[column, row])
-        weights = np.where(
-            down[:, None], np.stack([1 - v, u + v - 1, 1 - u], axis=1), np.stack([1 - u - v, u, v], axis=1)
-        )
-        return fine, weights
 
 
 def refine(polyhedron: Polyhedron, density: int) -> Refinement:
@@ -83,8 +66,6 @@ class _Grid:
     sides: Ints
     inner: Ints
     triangles: Ints
-    up: Ints
-    down: Ints
     twin: Ints
     border: Ints
 
@@ -96,20 +77,17 @@ def _grid(k: int) -> _Grid:
     sides = [[number[s, 0] for s in range(k + 1)], [number[k - s, s] for s in range(k + 1)]]
     sides.append([number[0, k - s] for s in range(k + 1)])
     inner = [number[i, j] for i, j in pairs if i > 0 and j > 0 and i + j < k]
-    up, down = np.zeros((k, k), dtype=np.intp), np.zeros((k, k), dtype=np.intp)
     triangles = []
     for i, j in ((i, j) for i in range(k) for j in range(k - i)):
-        up[i, j] = len(triangles)
         triangles.append([number[i, j], number[i + 1, j], number[i, j + 1]])
         if i + j < k - 1:
-            down[i, j] = len(triangles)
             triangles.append([number[i + 1, j], number[i + 1, j + 1], number[i, j + 1]])
     halfedge = {(t[c], t[(c + 1) % 3]): 3 * n + c for n, t in enumerate(triangles) for c in range(3)}
     twin = [halfedge.get((b, a), -1) for a, b in halfedge]
     border = [[halfedge[side[s], side[s + 1]] for s in range(k)] for side in sides]
     i, j = np.array(pairs).T
     barycentric = np.stack([k - i - j, i, j], axis=1) / k
-    arrays = (np.array(a, dtype=np.intp) for a in (sides, inner, triangles, up, down, twin, border))
+    arrays = (np.array(a, dtype=np.intp) for a in (sides, inner, triangles, twin, border))
     return _Grid(k, barycentric, *arrays)
 
 

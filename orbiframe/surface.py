@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from orbiframe.atlas import Points
 from orbiframe.basis import Basis, DifferentiableBasis
+from orbiframe.bisection import Bisection
 from orbiframe.errors import FitError
 from orbiframe.orbifold import Orbifold
 from orbiframe.polyhedron import Polyhedron
 from orbiframe.quadrature import triangle_points
-from orbiframe.refinement import Refinement, refine
+from orbiframe.refinement import refine
 from orbiframe.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
@@ -56,7 +57,7 @@ class OrbifoldSurface:
     """
 
     triangulation: Triangulation
-    refinement: Refinement
+    refinement: Bisection
     basis: Basis
     coefficients: Floats
     origin: Floats

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 
 from orbiframe import MapError, Polyhedron
-from orbiframe_parametrizers.nested_dissection import dissection_order, factorised
+from orbiframe_parametrizers.elimination import elimination_order, factorised
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -73,7 +73,7 @@ class _Law:
             self.packed_faces[without_face] = 0.0
         self.count = len(mesh.vertices)
         once = mesh.representative
-        self.order = dissection_order(mesh.vertices, mesh.tail[once], mesh.head[once])
+        self.order = elimination_order(mesh.vertices, mesh.tail[once], mesh.head[once])
         self.place = np.empty(self.count, dtype=np.intp)
         self.place[self.order] = np.arange(self.count)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -34,13 +36,12 @@ def developed(
     isometry = with_relations(geometry, transition, isometry)
     inverse = np.concatenate([[0], 1 + (np.arange(len(tail) - 1) ^ 1)])
     points = geometry.settle(frames[..., 0])
-    radius = _patch_radii(mesh, geometry, patch, points, isometry[transition])
-    atlas = Atlas(geometry, radius, tail, head, inverse, isometry)
+    atlas = Atlas(geometry, np.full(int(patch.max()) + 1, np.inf), tail, head, inverse, isometry)
     area = 2 * np.pi * abs(euler_characteristic)
     draft = Triangulation(Orbifold(atlas, euler_characteristic, orientable, area or 1.0), mesh, patch, points, transition)
-    if area:
-        return draft
-    return Triangulation(Orbifold(atlas, 0, orientable, float(draft.areas.sum())), mesh, patch, points, transition)
+    if not area:
+        draft = replace(draft, orbifold=Orbifold(atlas, 0, orientable, float(draft.areas.sum())))
+    return with_patch_radii(draft)
 
 
 def _edge_directions(mesh: Polyhedron, angles: Floats) -> tuple[Floats, Floats, Bools]:
@@ -171,12 +172,20 @@ def _close(a: Floats, b: Floats) -> Bools:
     return np.abs(a - b).max(axis=(1, 2)) < _SAME * np.maximum(1.0, np.abs(b).max(axis=(1, 2)))
 
 
-def _patch_radii(mesh: Polyhedron, geometry: Geometry, patch: Ints, points: Floats, across: Floats) -> Floats:
-    """For every patch the distance of the farthest corner of a triangle that has a corner in it."""
-    end = geometry.act(across, points[mesh.head])
-    reach = np.maximum(geometry.distance(geometry.origin, end), geometry.distance(geometry.origin, points[mesh.tail]))
-    radius = np.zeros(int(patch.max()) + 1)
-    np.maximum.at(radius, patch[mesh.tail], reach)
+def with_patch_radii(triangulation: Triangulation) -> Triangulation:
+    """The same map with the radius of every patch set to the farthest corner of a triangle that has a corner in it."""
+    mesh, atlas = triangulation.polyhedron, triangulation.orbifold.atlas
+    transition = triangulation.transition
+    radius = np.zeros(atlas.patch_count)
+    for here, there, across in (
+        (mesh.tail, mesh.head, transition),
+        (mesh.head, mesh.tail, atlas.inverse[transition]),
+    ):
+        for vertex, by in ((here, None), (there, across)):
+            x = triangulation.points[vertex]
+            x = x if by is None else atlas.geometry.act(atlas.isometry[by], x)
+            np.maximum.at(radius, triangulation.patch[here], atlas.geometry.distance(atlas.geometry.origin, x))
     if not np.isfinite(radius).all():
         raise MapError("the patches of X/H could not be laid out: an edge is too long; refine the mesh")
-    return radius
+    orbifold = replace(triangulation.orbifold, atlas=replace(atlas, radius=radius))
+    return replace(triangulation, orbifold=orbifold)

@@ -78,6 +78,5 @@ def _reshaped(flat: Triangulation, shape: Floats) -> Triangulation:
     isometry, points = atlas.isometry.copy(), flat.points.copy()
     isometry[:, 1:, 0] = isometry[:, 1:, 0] @ shape.T
     points[:, 1:] = points[:, 1:] @ shape.T
-    radius = atlas.radius * np.linalg.norm(shape, 2)
-    atlas = replace(atlas, isometry=isometry, radius=radius)
-    return replace(flat, orbifold=replace(flat.orbifold, atlas=atlas), points=points)
+    orbifold = replace(flat.orbifold, atlas=replace(atlas, isometry=isometry))
+    return replace(flat, orbifold=orbifold, points=points)

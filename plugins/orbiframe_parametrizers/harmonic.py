@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Literal
 
@@ -11,14 +10,15 @@ from numpy.typing import NDArray
 
 from orbiframe import Geometry, MapError, Polyhedron, Triangulation, surface_type
 from orbiframe_parametrizers.circle_packing import packed
-from orbiframe_parametrizers.developing import developed
-from orbiframe_parametrizers.edge_weights import WEIGHTS
+from orbiframe_parametrizers.developing import developed, with_patch_radii
+from orbiframe_parametrizers.edge_weights import WEIGHTS, cotangent, mean_value
 from orbiframe_parametrizers.flat import with_best_lattice
 from orbiframe_parametrizers.harmonic_energy import minimised
 
 Floats = NDArray[np.float64]
 
 _PATCH_RADIUS = 1.0
+_ROUNDS = 4
 
 
 def harmonic(
@@ -26,26 +26,27 @@ def harmonic(
     geometry: Geometry,
     group: object | None = None,
     *,
-    weights: Literal["auto", "cotangent", "mean-value", "uniform"] = "auto",
+    weights: Literal["auto", "cotangent", "mixed", "mean-value", "uniform"] = "auto",
 ) -> Triangulation:
     """Circle packing gives the group, an atlas carries it, and the harmonic map in it is the map of the mesh.
 
     polyhedron: a closed connected triangle mesh with chi <= 0, coherently oriented if orientable; geometry: H^2 for
-    chi < 0, E^2 for chi = 0, where the lattice is the one of least energy besides. weights: "auto" tries cotangents
-    and falls back to mean values, then ones, where a triangle is not positive. Raises MapError if none gives an
+    chi < 0, E^2 for chi = 0, where the lattice is the one of least energy besides. weights: "auto" tries cotangents,
+    then cotangents with mean values about the folds ("mixed"), then mean values, then ones, until every triangle is
+    positive. Raises MapError if none gives an
     embedding, or if a group is named (the group is found from the mesh).
     """
     if group is not None:
         raise MapError("the harmonic map finds its group from the mesh; leave the group out (group.method = 'mesh')")
     layout = _layout(polyhedron, geometry)
-    names = ["cotangent", "mean-value", "uniform"] if weights == "auto" else [weights]
+    names = ["cotangent", "mixed", "mean-value", "uniform"] if weights == "auto" else [weights]
     for name in names:
-        for triangulation in _attempt(layout, name):
-            if triangulation.not_positive == 0:
-                return triangulation
+        result = _mixed(layout) if name == "mixed" else _mapped(layout, name, WEIGHTS[name](polyhedron))
+        if result is not None and result.not_positive == 0:
+            return result
     raise MapError(
         f"no map without a fold was found with {' or '.join(names)} weights; "
-        + ("refine the mesh (map.vertices) or remove needle-like triangles" if weights == "auto" else "use map.weights = 'auto'")
+        + ("remove needle-like triangles or refine the mesh" if weights == "auto" else "use map.weights = 'auto'")
     )
 
 
@@ -74,13 +75,36 @@ def _flat_area(lengths: Floats) -> float:
     return float(np.sqrt(s * np.prod(s[:, None] - sides, axis=1)).sum())
 
 
-def _attempt(layout: Triangulation, name: str) -> Iterator[Triangulation]:
-    weights = WEIGHTS[name](layout.polyhedron)
+def _mapped(layout: Triangulation, name: str, weights: Floats) -> Triangulation | None:
+    """The harmonic map with given weights from a first guess; None where there is none. It may have folds."""
     if not np.isfinite(weights).all():
-        return
+        return None
     try:
         points = minimised(layout, weights)
     except (MapError, RuntimeError):
-        return
+        return None
     result = replace(layout, points=points, group="mesh, by circle packing", weights=name)
-    yield with_best_lattice(result, weights) if layout.orbifold.geometry.curvature == 0 else result
+    if layout.orbifold.geometry.curvature == 0:
+        result = with_best_lattice(result, weights)
+    return with_patch_radii(result)
+
+
+def _mixed(layout: Triangulation) -> Triangulation | None:
+    """Cotangents, but mean values on the edges about every fold; the region grows until no fold is left."""
+    mesh = layout.polyhedron
+    soft, firm = cotangent(mesh), mean_value(mesh)
+    if not (np.isfinite(soft).all() and np.isfinite(firm).all()):
+        return None
+    # Mean values have the dimension 1 / length; on equilateral triangles both are now the same.
+    firm = firm * mesh.edge_lengths.mean() / 2
+    result = _mapped(layout, "mixed", soft)
+    near = np.zeros(len(mesh.vertices), dtype=np.bool_)
+    for round_ in range(_ROUNDS):
+        if result is None or result.not_positive == 0:
+            return result
+        near[mesh.triangles[~(result.areas > 0)]] = True
+        for _ in range(1 + round_):
+            near[mesh.triangles[near[mesh.triangles].any(axis=1)]] = True
+        weights = np.where(near[mesh.tail] | near[mesh.head], firm, soft)
+        result = _mapped(replace(layout, points=result.points), "mixed", weights)
+    return result

@@ -10,12 +10,12 @@ from scipy.sparse import coo_array
 from scipy.sparse.linalg import LinearOperator, cg
 
 from orbiframe import Geometry, MapError, Triangulation
-from orbiframe_parametrizers.nested_dissection import dissection_order, factorised
+from orbiframe_parametrizers.elimination import elimination_order, factorised
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-_STEPS = 60
+_STEPS = 40
 _DECREMENT = 1e-14
 
 
@@ -24,15 +24,17 @@ def minimised(start: Triangulation, weights: Floats) -> Floats:
 
     start: the group and the first guess; weights: (H,). Strictly convex in H^2 for positive weights, so that the
     minimum is unique, and an embedding (Colin de Verdiere 1991, Hass and Scott 2015); a linear system in E^2. Stops
-    on the Newton decrement. Raises MapError if 60 steps do not suffice.
+    on the Newton decrement. Raises MapError if 40 steps do not suffice.
     """
     energy = _Energy(start, weights)
     points = start.points
     value = energy.value(points)
     for _ in range(_STEPS):
         step, decrement = energy.newton_step(points)
-        if not np.isfinite(decrement):
-            break
+        if not decrement > 0:
+            if decrement == 0:
+                return points
+            break  # not convex: negative weights
         size = 1.0
         while size > 1e-6:
             trial = energy.moved(points, size * step)
@@ -68,7 +70,7 @@ class _Energy:
         self.isometry = orbifold.atlas.isometry[start.transition[edges]]
         self.weights = weights[edges]
         self.count = len(mesh.vertices)
-        self.order = dissection_order(mesh.vertices, self.tail, self.head)
+        self.order = elimination_order(mesh.vertices, self.tail, self.head)
         self.place = np.empty(self.count, dtype=np.intp)
         self.place[self.order] = np.arange(self.count)
         # Frames that all have one orientation make the Hessian nearly complex linear: see newton_step.

@@ -16,6 +16,7 @@ _LARGEST = 2.0
 def centred_caps(z: NDArray[np.complex128], radii: Floats, weights: Floats) -> Floats:
     """The centres (V, 3) on the unit sphere of circles z, radii (V,) of the plane, moved to have weighted mean zero.
 
+    Points are circles of radius 0.
     A circle is the vector (cos rho, c) / sin rho of its spherical cap (centre c, angular radius rho) in the Lorentz
     space R^(1,3), on which Moebius maps act as Lorentz maps. Newton steps: a small boost b moves a small cap by
     (I - c c^T) b. For points the balanced position exists and is unique up to rotation (Springborn 2005, the minimum
@@ -42,12 +43,12 @@ def centred_caps(z: NDArray[np.complex128], radii: Floats, weights: Floats) -> F
 
 
 def _caps(z: NDArray[np.complex128], radii: Floats) -> Floats:
-    """Lorentz vectors (V, 4) of the circles under the stereographic projection that sends 0 to (1, 0, 0)."""
-    # With t + n0 = 1 / r and t - n0 = (|z|^2 - r^2) / r; a product instead of the difference of squares.
-    inverse = 1 / radii
-    difference = (np.abs(z) - radii) * (np.abs(z) + radii) * inverse
-    height, axis = (inverse + difference) / 2, (inverse - difference) / 2
-    return np.stack([height, axis, z.real * inverse, z.imag * inverse], axis=1)
+    """Lorentz vectors (V, 4) of the circles, times r, under the stereographic projection that sends 0 to (1, 0, 0).
+
+    The factor makes points the circles of radius 0; the boosts are linear, and only the centres are read off.
+    """
+    power = (np.abs(z) - radii) * (np.abs(z) + radii)
+    return np.stack([(1 + power) / 2, (1 - power) / 2, z.real, z.imag], axis=1)
 
 
 def _boost(direction: Floats, rapidity: float) -> Floats:

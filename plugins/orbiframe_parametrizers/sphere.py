@@ -8,17 +8,18 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
 
 from orbiframe import Atlas, Geometry, MapError, Orbifold, Polyhedron, Triangulation, surface_type
 from orbiframe_parametrizers.circle_packing import packed
 from orbiframe_parametrizers.double_cover import DoubleCover, double_cover
 from orbiframe_parametrizers.edge_weights import WEIGHTS
 from orbiframe_parametrizers.moebius import centred_caps
-from orbiframe_parametrizers.nested_dissection import dissection_order, factorised
+from orbiframe_parametrizers.plane_layout import harmonic_layout, packed_layout
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
+
+_SMOOTHINGS = 30
 
 
 def sphere(
@@ -26,14 +27,15 @@ def sphere(
     geometry: Geometry,
     group: object | None = None,
     *,
-    weights: Literal["auto", "cotangent", "packing"] = "auto",
+    weights: Literal["auto", "cotangent", "mean-value", "packing"] = "auto",
 ) -> Triangulation:
     """The map to S^2, or of a projective plane to P^2 through its double cover.
 
     One face is taken away and the rest is packed with circles in the plane (Koebe, Andreev, Thurston: possible for
-    every triangulation), projected to the sphere and centred by a Moebius map. weights: "cotangent" replaces the
-    circle centres by the harmonic map in the plane, which follows the metric of the mesh; "auto" takes whichever of
-    the two has no fold and the smaller median angle distortion. Raises MapError if neither is an embedding.
+    every triangulation), projected to the sphere and centred by a Moebius map. weights: "cotangent" and "mean-value"
+    replace the circle centres by a harmonic map to the plane with one pole, which follows the metric of the mesh;
+    "auto" takes the one of the three that has no fold and the smallest median angle distortion. Raises MapError if
+    none is an embedding.
     """
     surface = surface_type(polyhedron)
     if surface.euler_characteristic <= 0 or geometry.curvature != 1:
@@ -41,7 +43,7 @@ def sphere(
     if group is not None:
         raise MapError("the map to the sphere takes no group; leave it out (group.method = 'mesh')")
     target = _Sphere(polyhedron, geometry) if surface.orientable else _ProjectivePlane(polyhedron, geometry)
-    names = ["cotangent", "packing"] if weights == "auto" else [weights]
+    names = ["cotangent", "mean-value", "packing"] if weights == "auto" else [weights]
     made = [result for name in names for result in target.attempts(name)]
     embedded = [result for result in made if result.not_positive == 0]
     if not embedded:
@@ -101,63 +103,42 @@ def _one_patch(geometry: Geometry, isometry: Floats) -> Atlas:
 
 def _spherical(mesh: Polyhedron, name: str) -> Floats | None:
     """The vertices on the unit sphere, (V, 3), or None where the weights are not finite."""
-    hole = int(np.argmax(np.linalg.norm(_normals(mesh), axis=1)))
-    packing = packed(mesh, 0, without_face=hole)
-    flat = _flat_weights(packing.angles) if name == "packing" else WEIGHTS[name](mesh)
+    normals = _normals(mesh)
+    size = np.linalg.norm(normals, axis=1)
+    hole = int(np.argmax(size))
     if name == "packing":
-        flat = flat + flat[mesh.twin]
-    if not np.isfinite(flat).all():
-        return None
-    z = _plane_layout(mesh, flat, hole)
-    if name == "packing":
-        radii = packing.radii
+        packing = packed(mesh, 0, without_face=hole)
+        z, radii = packed_layout(mesh, packing.angles, hole), packing.radii
     else:
-        # The harmonic map has no circles: points take small ones, of a size that does not matter.
-        radii = np.full(len(z), 1e-6 * np.abs(z).max())
-    areas = np.bincount(mesh.tail, weights=np.repeat(np.linalg.norm(_normals(mesh), axis=1), 3), minlength=len(z))
-    return centred_caps(z, radii, areas)
+        weights = WEIGHTS[name](mesh)
+        if not np.isfinite(weights).all():
+            return None
+        z, radii = harmonic_layout(mesh, weights, hole), np.zeros(len(mesh.vertices))
+    areas = np.bincount(mesh.tail, weights=np.repeat(size, 3), minlength=len(z))
+    points = centred_caps(z, radii, areas)
+    return points if name == "packing" else _unfolded(mesh, points)
+
+
+def _unfolded(mesh: Polyhedron, points: Floats) -> Floats:
+    """The points with folds smoothed away, as they occur beside the pole: means of neighbours on and around folds."""
+    weights = WEIGHTS["mean-value"](mesh)
+    near = np.zeros(len(points), dtype=np.bool_)
+    for _ in range(_SMOOTHINGS):
+        corners = points[mesh.triangles]
+        folded = np.linalg.det(corners) <= 0
+        if not folded.any():
+            break
+        near[mesh.triangles[folded]] = True
+        for _ in range(2):
+            near[mesh.triangles[near[mesh.triangles].any(axis=1)]] = True
+        moved = np.flatnonzero(near[mesh.tail])
+        mean = np.zeros_like(points)
+        np.add.at(mean, mesh.tail[moved], weights[moved, None] * points[mesh.head[moved]])
+        length = np.linalg.norm(mean, axis=1, keepdims=True)
+        points = np.where(near[:, None] & (length > 0), mean / np.where(length > 0, length, 1.0), points)
+    return points
 
 
 def _normals(mesh: Polyhedron) -> Floats:
     p = mesh.vertices[mesh.triangles]
     return np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
-
-
-def _flat_weights(angles: Floats) -> Floats:
-    """Half the cotangent of the angle opposite to every halfedge, (H,), from corner angles (H,)."""
-    with np.errstate(divide="ignore"):
-        cotangents = 0.5 / np.tan(angles.reshape(-1, 3))
-    return np.roll(cotangents, -2, axis=1).ravel()
-
-
-def _plane_layout(mesh: Polyhedron, weights: Floats, hole: int) -> NDArray[np.complex128]:
-    """The vertices in the plane: the corners of the hole clockwise on three unit circles, the rest harmonic.
-
-    With the cotangents of a flat metric this is the isometric layout itself, since linear functions are harmonic.
-    The edges of the hole have both ends fixed, so that its missing face does not matter.
-    """
-    order = dissection_order(mesh.vertices, mesh.tail, mesh.head)
-    place = np.empty(len(order), dtype=np.intp)
-    place[order] = np.arange(len(order))
-    corners = mesh.triangles[hole]
-    position = np.zeros(len(order), dtype=np.complex128)
-    position[corners] = 2 / np.sqrt(3) * np.exp(1j * (np.pi / 2 - 2 * np.pi / 3 * np.arange(3)))
-    fixed = np.zeros(len(order), dtype=np.bool_)
-    fixed[corners] = True
-    i, j = mesh.tail, mesh.head
-    inner = ~fixed[i]
-    right = np.zeros(len(order), dtype=np.complex128)
-    np.add.at(right, i[inner & fixed[j]], weights[inner & fixed[j]] * position[j[inner & fixed[j]]])
-    right[corners] = position[corners]
-    diagonal = np.where(fixed, 1.0, np.bincount(i, weights=weights, minlength=len(order)))
-    once = np.flatnonzero(inner & ~fixed[j])
-    every = np.arange(len(order))
-    rows = place[np.concatenate([i[once], every])]
-    columns = place[np.concatenate([j[once], every])]
-    # A halfedge whose twin runs the same way stands for both directions of its edge.
-    data = np.concatenate([-weights[once], diagonal])
-    matrix = coo_array((data, (rows, columns)), shape=(len(order), len(order))).tocsc()
-    factor = factorised(matrix)
-    solution = np.empty_like(right)
-    solution[order] = factor.solve(right[order].real) + 1j * factor.solve(right[order].imag)
-    return solution

@@ -1,0 +1,161 @@
+"""Bisection: a triangle mesh refined until no edge is too long, and points found in it again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe.errors import TopologyError
+from orbiframe.polyhedron import Polyhedron
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Bisection:
+    """A triangle mesh and its refinement by halving edges, as a forest of triangles.
+
+    coarse, polyhedron: the mesh before and after; its first vertices are the coarse ones. side: (N,), the side across
+    which node n of the forest is halved, -1 at a leaf; child: (N,), the first half, the second one follows it, or at
+    a leaf the triangle of the refined mesh. The first nodes are the coarse triangles.
+    """
+
+    coarse: Polyhedron
+    polyhedron: Polyhedron
+    side: Ints
+    child: Ints
+
+    def locate(self, face: Ints, barycentric: Floats) -> tuple[Ints, Floats]:
+        """The fine triangle (n,) and the barycentric coordinates in it (n, 3) of points of coarse triangles."""
+        node = np.array(face, dtype=np.intp)
+        weights = np.array(barycentric, dtype=np.float64)
+        active = np.flatnonzero(self.side[node] >= 0)
+        while len(active):
+            side = self.side[node[active]]
+            rows = np.arange(len(active))
+            a, b, c = (weights[active][rows, (side + k) % 3] for k in range(3))
+            second = b > a
+            # Halves are (a, middle, c) and (middle, b, c); the middle takes twice the smaller of the two weights.
+            first_half = np.stack([a - b, 2 * b, c], axis=1)
+            second_half = np.stack([2 * a, b - a, c], axis=1)
+            weights[active] = np.where(second[:, None], second_half, first_half)
+            node[active] = self.child[node[active]] + second
+            active = active[self.side[node[active]] >= 0]
+        return self.child[node], weights
+
+
+def bisected(polyhedron: Polyhedron, longest: float) -> Bisection:
+    """The triangle mesh with edges halved until none is longer than `longest`; flat, watertight, same surface.
+
+    An edge is halved when it is the longest of both its triangles, so that long thin triangles become rounder and no
+    angle falls below half the least one of the mesh (Rivara 1984, 1997: longest-edge propagation). Deterministic:
+    of equal edges the one with the larger index is halved first. Raises TopologyError for an open mesh, or a length
+    that is not positive.
+    """
+    if not longest > 0:
+        raise TopologyError(f"edges no longer than {longest} were asked for; the length must be positive")
+    if (polyhedron.twin < 0).any():
+        raise TopologyError("only a closed mesh is refined; `orbiframe info` lists its open edges")
+    state = _State(polyhedron)
+    while len(edges := state.edges_to_halve(longest)):
+        state.halve(edges)
+    return state.result(polyhedron)
+
+
+def edge_length_for(polyhedron: Polyhedron, vertices: int) -> float:
+    """The longest edge that gives about so many vertices, spread evenly over the surface.
+
+    Needle-like triangles need more: the length is doubled until no more than four times as many are added.
+    """
+    corners = polyhedron.vertices[polyhedron.triangles]
+    area = float(np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()) / 2
+    lengths = polyhedron.edge_lengths[polyhedron.representative]
+    # Edges end up between half the longest and the longest: a vertex holds about 0.42 of its square.
+    longest = max(float(np.sqrt(area / (0.42 * vertices))), 1e-9 * float(lengths.max()))
+    while float(np.maximum(np.ceil(lengths / longest) - 1, 0).sum()) > 4 * vertices:
+        longest *= 2
+    return longest
+
+
+class _State:
+    """The mesh while it is being refined: vertices, triangles, twins, and the forest."""
+
+    def __init__(self, mesh: Polyhedron) -> None:
+        self.vertices = mesh.vertices
+        self.triangles = mesh.triangles.copy()
+        self.twin, self.same = mesh.twin.copy(), mesh.same.copy()
+        self.node = np.arange(mesh.face_count)
+        self.side = np.full(mesh.face_count, -1, dtype=np.intp)
+        self.child = np.arange(mesh.face_count)
+
+    def edges_to_halve(self, longest: float) -> Ints:
+        """One halfedge of each edge that is too long and the longest of both its triangles."""
+        head = np.roll(self.triangles, -1, axis=1)
+        length = np.linalg.norm(self.vertices[head] - self.vertices[self.triangles], axis=2).ravel()
+        index = np.arange(len(length))
+        edge = np.minimum(index, self.twin)
+        # Both halfedges of an edge must compare alike, down to the last bit.
+        length = length[edge]
+        if not (length > longest).any():
+            return index[:0]
+        rank = np.empty(len(length), dtype=np.intp)
+        rank[np.lexsort((edge, length))] = index
+        rank = np.maximum(rank, rank[self.twin])
+        top = np.zeros(len(length), dtype=np.bool_)
+        top[3 * np.arange(len(self.triangles)) + rank.reshape(-1, 3).argmax(axis=1)] = True
+        return np.flatnonzero(top & top[self.twin] & (index == edge) & (length > longest))
+
+    def halve(self, edges: Ints) -> None:
+        """Put a vertex in the middle of each edge and halve the two triangles beside it."""
+        count, faces = len(self.vertices), len(self.triangles)
+        halves = np.concatenate([edges, self.twin[edges]])
+        middle = np.tile(count + np.arange(len(edges)), 2)
+        face, side = halves // 3, halves % 3
+        second = faces + np.arange(len(halves))
+        a, b, c = (self.triangles[face, (side + k) % 3] for k in range(3))
+        ends = self.triangles.ravel()[edges], np.roll(self.triangles, -1, axis=1).ravel()[edges]
+        self.vertices = np.concatenate([self.vertices, (self.vertices[ends[0]] + self.vertices[ends[1]]) / 2])
+        self._grow_forest(face, side, second)
+        self._glue(edges, halves, face, side, second)
+        self.triangles = np.concatenate([self.triangles, np.stack([middle, b, c], axis=1)])
+        self.triangles[face] = np.stack([a, middle, c], axis=1)
+
+    def _grow_forest(self, face: Ints, side: Ints, second: Ints) -> None:
+        node = self.node[face]
+        children = len(self.side) + 2 * np.arange(len(face))
+        self.side[node], self.child[node] = side, children
+        self.side = np.concatenate([self.side, np.full(2 * len(face), -1, dtype=np.intp)])
+        self.child = np.concatenate([self.child, np.stack([face, second], axis=1).ravel()])
+        self.node = np.concatenate([self.node, children + 1])
+        self.node[face] = children
+
+    def _glue(self, edges: Ints, halves: Ints, face: Ints, side: Ints, second: Ints) -> None:
+        """Twins after halving: outer sides keep theirs, the cuts pair up, and so do the four half edges."""
+        place = np.arange(len(self.twin))
+        place[3 * face + (side + 1) % 3] = 3 * second + 1
+        place[3 * face + (side + 2) % 3] = 3 * face + 2
+        size = len(self.twin) + 3 * len(second)
+        twin, same = np.full(size, -1, dtype=np.intp), np.zeros(size, dtype=np.bool_)
+        outer = np.ones(len(self.twin), dtype=np.bool_)
+        outer[halves] = False
+        twin[place[outer]] = place[self.twin[outer]]
+        same[place[outer]] = self.same[outer]
+        twin[3 * face + 1], twin[3 * second + 2] = 3 * second + 2, 3 * face + 1
+        n = len(edges)
+        parallel = self.same[edges]
+        near, far = 3 * face[:n], 3 * second[:n]
+        other_near, other_far = 3 * face[n:], 3 * second[n:]
+        for mine, alike, opposite in ((near, other_near, other_far), (far, other_far, other_near)):
+            theirs = np.where(parallel, alike, opposite)
+            twin[mine], twin[theirs] = theirs, mine
+            same[mine] = same[theirs] = parallel
+        self.twin, self.same = twin, same
+
+    def result(self, coarse: Polyhedron) -> Bisection:
+        offsets = np.arange(len(self.triangles) + 1) * 3
+        fine = Polyhedron(self.vertices, offsets, self.triangles.ravel(), self.twin, self.same)
+        return Bisection(coarse, fine, self.side, self.child)
