@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -17,6 +18,7 @@ RUN = [page for page in PAGES if any(block.language in {"console", "python"} for
 SHELL = {"python3", "make", "sudo", ".venv/bin/pip", ".venv/bin/python", ".venv/bin/pytest"}
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?")
 _ROUNDING = 1e-6
+_GAP = "…"
 
 
 @pytest.fixture
@@ -39,11 +41,20 @@ def test_page_runs_from_top_to_bottom(page, place, capsys):
     for block in blocks(page):
         if block.title:
             (place / block.title).write_text(block.text)
+            if block.title.startswith("test_"):
+                _require_passing(place / block.title)
         elif block.language == "python":
             exec(compile(block.text, page_name(page), "exec"), names)
         elif block.language == "console":
             for command in commands(block.text):
                 _run(command, capsys)
+
+
+def _require_passing(tests: Path) -> None:
+    """A test file of a page passes, in a process of its own."""
+    pytest_there = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", tests.name]
+    done = subprocess.run(pytest_there, cwd=tests.parent, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def _run(command: Command, capsys) -> None:
@@ -58,8 +69,12 @@ def _run(command: Command, capsys) -> None:
 
 
 def _require_like(shown: str, found: str) -> None:
-    """The same words, and numbers within a factor of two; times and rounding errors may be any."""
-    for expected, line in zip(_lines(shown), _lines(found), strict=True):
+    """The same words, and numbers within a factor of two; times, rounding errors and what `…` stands for may be any."""
+    expected_lines, lines = _lines(shown), _lines(found)
+    if _GAP in expected_lines:
+        gap = expected_lines.index(_GAP)
+        lines[gap : len(lines) - len(expected_lines) + gap + 1] = [_GAP]
+    for expected, line in zip(expected_lines, lines, strict=True):
         assert _words(expected) == _words(line)
         if not expected.startswith("seconds"):
             for a, b in zip(_numbers(expected), _numbers(line), strict=True):
@@ -99,6 +114,9 @@ def test_a_wrong_output_is_noticed():
     """The comparison itself: other words and other numbers fail, other times and rounding errors do not."""
     _require_like("error 1.0e-03\nseconds 2.0 (map 1.0)", "error 1.4e-03\nseconds 9.0 (map 0.1)")
     _require_like("defect 2.0e-15", "defect 7.1e-16")
+    _require_like("first\n…\nlast", "first\nsecond\nthird\nlast")
+    with pytest.raises(AssertionError):
+        _require_like("first\n…\nlast", "first\nsecond\nthird\nother")
     for wrong in ("error 5.0e-03\nseconds 2.0 (map 1.0)", "fehler 1.0e-03\nseconds 2.0 (map 1.0)", "error 1.0e-03"):
         with pytest.raises((AssertionError, ValueError)):
             _require_like("error 1.0e-03\nseconds 2.0 (map 1.0)", wrong)
