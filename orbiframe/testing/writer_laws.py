@@ -5,7 +5,7 @@ A writer is tried together with the reader of its format (`lab.counterpart`), if
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,6 +20,8 @@ from orbiframe.testing.lab import Lab
 Component = Callable[..., Any]
 
 TABLES = ("vertices", "offsets", "tail", "twin", "same")
+# Triangles alone, quads alone, and polygons of two sizes: few, since a reader may start a process for each file.
+SAMPLES = ("tetrahedron", "cube", "prism")
 
 
 def faces_survive(writer: Component, lab: Lab) -> None:
@@ -34,7 +36,8 @@ def faces_survive(writer: Component, lab: Lab) -> None:
 
 def input_is_unchanged(writer: Component, lab: Lab) -> None:
     """Writing changes nothing in the polyhedron."""
-    for name, polyhedron in lab.polyhedra.items():
+    for name in SAMPLES[:2]:
+        polyhedron = lab.polyhedra[name]
         copies = {table: getattr(polyhedron, table).copy() for table in TABLES}
         written(writer, lab, name, polyhedron)
         for table, copy in copies.items():
@@ -43,7 +46,7 @@ def input_is_unchanged(writer: Component, lab: Lab) -> None:
 
 def same_bytes(writer: Component, lab: Lab) -> None:
     """The same polyhedron written twice gives the same bytes."""
-    for path, polyhedron in files(writer, lab):
+    for path, polyhedron in files(writer, lab, SAMPLES[:2]):
         first = path.read_bytes()
         writer(path, polyhedron)
         assert path.read_bytes() == first, f"{path.name} differs from run to run"
@@ -51,13 +54,14 @@ def same_bytes(writer: Component, lab: Lab) -> None:
 
 def unfit_is_refused(writer: Component, lab: Lab) -> None:
     """What the format cannot hold is a FormatError, and at least the tetrahedron can be written."""
-    outcomes = {name: written(writer, lab, name, polyhedron) for name, polyhedron in lab.polyhedra.items()}
-    assert outcomes["tetrahedron"] is not None, "the tetrahedron is refused"
+    outcomes = [written(writer, lab, name, lab.polyhedra[name]) for name in SAMPLES]
+    assert outcomes[0] is not None, "the tetrahedron is refused"
 
 
-def files(writer: Component, lab: Lab) -> Iterator[tuple[Path, Polyhedron]]:
-    """The files of all reference polyhedra that the format holds, with coordinates of many digits."""
-    for name, polyhedron in lab.polyhedra.items():
+def files(writer: Component, lab: Lab, names: Sequence[str] = SAMPLES) -> Iterator[tuple[Path, Polyhedron]]:
+    """The files of those reference polyhedra that the format holds, with coordinates of many digits."""
+    for name in names:
+        polyhedron = lab.polyhedra[name]
         noise = lab.rng.normal(size=polyhedron.vertices.shape)
         moved = replace(polyhedron, vertices=polyhedron.vertices + noise / 64)
         path = written(writer, lab, name, moved)
@@ -71,7 +75,6 @@ def written(writer: Component, lab: Lab, name: str, polyhedron: Polyhedron) -> P
     try:
         writer(path, polyhedron)
     except FormatError:
-        assert name != "tetrahedron", "the tetrahedron is refused"
         return None
     assert path.is_file(), f"no file is made for the {name}"
     return path
