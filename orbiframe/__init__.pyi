@@ -2,6 +2,7 @@
 
 from orbiframe.atlas import Atlas as Atlas, Points as Points
 from orbiframe.basis import Basis as Basis, DifferentiableBasis as DifferentiableBasis, OrbitSumBasis as OrbitSumBasis
+from orbiframe.config import Config as Config
 from orbiframe.confinement import confined_read as confined_read, confined_write as confined_write
 from orbiframe.errors import (
     ConfigError as ConfigError,
@@ -19,11 +20,13 @@ from orbiframe.geometry import Geometry as Geometry
 from orbiframe.group import Group as Group
 from orbiframe.motion import Motion as Motion
 from orbiframe.orbifold import Orbifold as Orbifold
+from orbiframe.pipeline import fit as fit
 from orbiframe.plugin import Component as Component, hookimpl as hookimpl
 from orbiframe.polygon import FundamentalPolygon as FundamentalPolygon, regular_polygon as regular_polygon
 from orbiframe.polygon_group import PolygonGroup as PolygonGroup
 from orbiframe.polyhedron import Polyhedron as Polyhedron
 from orbiframe.quadrature import triangle_points as triangle_points, triangle_rule as triangle_rule
+from orbiframe.registry import Registry as Registry
 from orbiframe.samples import Samples as Samples
 from orbiframe.spacing import (
     Graph as Graph,
@@ -33,6 +36,8 @@ from orbiframe.spacing import (
     edge_graph as edge_graph,
     farthest_points as farthest_points,
 )
+from orbiframe.surface import OrbifoldSurface as OrbifoldSurface
+from orbiframe.surface_file import load_surface as load_surface, save_surface as save_surface
 from orbiframe.topology import (
     SurfaceType as SurfaceType,
     fan_labels as fan_labels,

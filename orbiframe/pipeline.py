@@ -131,7 +131,8 @@ def _of_size(
     basis = stages("basis", config.component("basis", registry), triangulation.orbifold, triangulation)
     fitter = config.component("fitter", registry)()
     coefficients = stages("fit", fitter.fit, basis, samples)
-    surface = OrbifoldSurface(triangulation, refinement, basis, coefficients, np.zeros(3), 1.0)
+    recipe = config.basis.name, dict(config.basis.options)
+    surface = OrbifoldSurface(triangulation, refinement, basis, coefficients, np.zeros(3), 1.0, *recipe)
     return surface, samples, stages("error", _deviation, surface, samples)
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,7 +54,8 @@ class OrbifoldSurface:
 
     triangulation: the map from the (refined) mesh to X/H; refinement: how that mesh refines the triangles of the
     input; basis and coefficients (size, 3): the functions; origin (3,) and scale: a value v is the point
-    origin + scale * v, so that the coefficients belong to a mesh of unit size at the origin.
+    origin + scale * v, so that the coefficients belong to a mesh of unit size at the origin. basis_name and
+    basis_options: the component that made the basis, and its options, from which a saved surface makes it again.
     """
 
     triangulation: Triangulation
@@ -62,6 +64,8 @@ class OrbifoldSurface:
     coefficients: Floats
     origin: Floats
     scale: float
+    basis_name: str = ""
+    basis_options: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def orbifold(self) -> Orbifold:

@@ -33,6 +33,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     """Fit, write what was asked for, and say what came out."""
     from orbiframe import formats, pipeline
     from orbiframe.config import Config
+    from orbiframe.surface_file import save_surface
 
     config = Config.load(args.config, overrides(args))
     for path in config.plugins:
@@ -42,7 +43,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     result = pipeline.fit(args.mesh, config, registry, Progress(quiet=args.quiet))
     formats.write(args.output, result.output, registry)
     if args.save:
-        result.surface.save(args.save)
+        save_surface(result.surface, args.save)
     if args.report:
         write_report(args.report, result.report)
     if not args.quiet:

@@ -47,7 +47,7 @@ class Gaussian(OrbitSumBasis):
         triangulation: Triangulation,
         *,
         size: int = 1000,
-        width: float = 1.1,
+        width: float = 1.3,
         reach: float = 2.6,
     ) -> None:
         _require_positive(size=size, width=width, reach=reach)

@@ -42,8 +42,11 @@ def harmonic(
     names = ["cotangent", "mixed", "mean-value", "uniform"] if weights == "auto" else [weights]
     for name in names:
         result = _mixed(layout) if name == "mixed" else _mapped(layout, name, WEIGHTS[name](polyhedron))
-        if result is not None and result.not_positive == 0:
+        if result is None:
+            continue
+        if result.not_positive == 0:
             return result
+        layout = result if name == "cotangent" else layout  # a better first guess than the packing
     raise MapError(
         f"no map without a fold was found with {' or '.join(names)} weights; "
         + ("remove needle-like triangles or refine the mesh" if weights == "auto" else "use map.weights = 'auto'")

@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 _STEPS = 40
-_DECREMENT = 1e-14
+_DECREMENT = 1e-10
 
 
 def minimised(start: Triangulation, weights: Floats) -> Floats:
