@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import FormatError, Polyhedron
-from orbiframe_polygons.faces import colours, corners, offsets_of, require_colours, require_sizes
+from orbiframe_polygons.faces import colours, corners, offsets_of, require_colours, require_sizes, whole
 from orbiframe_polygons.text import Text, read_text, shown
 
 Floats = NDArray[np.float64]
@@ -139,13 +139,17 @@ def _blame(faces: Text) -> NoReturn:
     raise FormatError(f"{faces.path}: the corners of the faces cannot be read")
 
 
-def _from_zero(faces: Text, values: Floats, seen: Ints) -> Floats:
+def _from_zero(faces: Text, values: Floats, seen: Ints) -> Ints:
     """Indices that count from 0, where those of the file count from 1, or from -1 backwards."""
-    zero = np.flatnonzero(values == 0)
+
+    def row(corner: int) -> int:
+        return int(np.searchsorted(np.cumsum(faces.words), corner, side="right"))
+
+    index = whole(values, lambda corner: f"{faces.path}, line {faces.number[row(corner)]}")
+    zero = np.flatnonzero(index == 0)
     if len(zero):
-        row = int(np.searchsorted(np.cumsum(faces.words), zero[0], side="right"))
-        faces.refuse(row, "found the index 0, but OBJ counts from 1")
-    return np.where(values < 0, np.repeat(seen, faces.words) + values, values - 1)
+        faces.refuse(row(int(zero[0])), "found the index 0, but OBJ counts from 1")
+    return np.where(index < 0, np.repeat(seen, faces.words) + index, index - 1)
 
 
 def _per_vertex(points: Ints, pointers: Ints | None, directions: Floats, count: int) -> Floats | None:
