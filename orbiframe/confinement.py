@@ -96,6 +96,8 @@ def main(verb: str, target: str, path: str, parcel: str, memory: str) -> int:
         return _said(str(error), STATUS.get(type(error), STATUS[FormatError]))
     except MemoryError:
         return _said(f"{path}: the library asks for more memory than allowed; are the counts in the file right?")
+    except SystemExit:
+        return _said(f"{path}: the library for this format ended its process; the file is not what it expects")
     except Exception as error:
         return _said(f"{path}: the library for this format failed: {type(error).__name__}: {error}")
     return 0

@@ -21,6 +21,8 @@ POLYGONS = {"triangle", "quad", "polygon"}
 BELOW = {"vertex", "line"}
 # Where the dialect that meshio would choose is not what programs expect, or does not hold faces of several sizes.
 DIALECTS = {".msh": "gmsh22"}
+# What this dialect asks of every cell.
+TAGS: dict[str | None, tuple[str, ...]] = {"gmsh22": ("gmsh:physical", "gmsh:geometrical")}
 ENTITY = re.compile(rb"<!(ENTITY|DOCTYPE)")
 # Relative to the bounding box: formats that round coordinates to float32 pass, a lost digit more does not.
 ROUNDING = 1e-6
@@ -36,9 +38,11 @@ def polyhedron_of(path: Path) -> Polyhedron:
 
 def save(path: Path, polyhedron: Polyhedron) -> None:
     """Write a file and read it again. Raises FormatError where that is not the same polyhedron."""
-    mesh = meshio.Mesh(polyhedron.vertices, list(_blocks(polyhedron)))
+    blocks = list(_blocks(polyhedron))
+    dialect = DIALECTS.get(path.suffix.lower())
+    tags = {name: [np.zeros(len(corners), dtype=np.int32) for _, corners in blocks] for name in TAGS.get(dialect, ())}
     with _strict(path):
-        meshio.write(path, mesh, file_format=DIALECTS.get(path.suffix.lower()))
+        meshio.write(path, meshio.Mesh(polyhedron.vertices, blocks, cell_data=tags), file_format=dialect)
     _require_same(path, polyhedron, polyhedron_of(path))
 
 

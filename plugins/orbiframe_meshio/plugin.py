@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from orbiframe.plugin import Component, hookimpl
 
-# meshio knows more suffixes: those are left out whose surfaces it cannot write and read again without loss, whose
-# library is not installed with it, and archives.
+# meshio knows more suffixes. Left out are those whose surfaces it cannot write and read again without loss, those
+# whose library is not installed with it, archives, and what is seldom used for surfaces.
 SUFFIXES = (
     ".vtk",
     ".vtu",
@@ -14,12 +14,8 @@ SUFFIXES = (
     ".meshb",
     ".inp",
     ".avs",
-    ".mdpa",
-    ".vol",
     ".dat",
     ".tec",
-    ".post",
-    ".dato",
 )
 
 

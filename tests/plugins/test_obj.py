@@ -2,11 +2,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from orbiframe_polygons.obj_reader import read
+from orbiframe_polygons.obj_writer import write
 
 from orbiframe import FormatError, Polyhedron
 from orbiframe.testing import contract_tests
-from orbiframe_polygons.obj_reader import read
-from orbiframe_polygons.obj_writer import write
 
 test_reader_laws = contract_tests("reader", read, suffix=".obj", counterpart=write)
 test_writer_laws = contract_tests("writer", write, suffix=".obj", counterpart=read)

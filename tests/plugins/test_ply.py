@@ -5,13 +5,12 @@ from functools import partial
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
+from orbiframe_polygons.ply_reader import read
+from orbiframe_polygons.ply_writer import write
 
 from orbiframe import FormatError, Polyhedron
 from orbiframe.testing import contract_tests
-from orbiframe_polygons.ply_reader import read
-from orbiframe_polygons.ply_writer import write
 
 SPELLINGS = [{"ascii": True}, {}, {"big_endian": True}]
 
@@ -179,7 +178,9 @@ def test_all_that_a_polyhedron_has_survives(tmp_path, options, levels):
         "colors": rng.integers(0, levels, (5, 4)) / (levels - 1),
         "face_colors": rng.integers(0, levels, (4, 3)) / (levels - 1),
     }
-    made = Polyhedron.from_corners(rng.normal(size=(5, 3)), [0, 3, 7, 12, 15], sum(faces, []), **tables)
+    made = Polyhedron.from_corners(
+        rng.normal(size=(5, 3)), [0, 3, 7, 12, 15], [corner for face in faces for corner in face], **tables
+    )
     write(tmp_path / "a.ply", made, **options)
     found = read(tmp_path / "a.ply")
     for table in ("vertices", "offsets", "tail", *tables):

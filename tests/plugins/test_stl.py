@@ -5,11 +5,11 @@ from functools import partial
 
 import numpy as np
 import pytest
+from orbiframe_polygons.stl_reader import read
+from orbiframe_polygons.stl_writer import write
 
 from orbiframe import FormatError, Polyhedron
 from orbiframe.testing import contract_tests
-from orbiframe_polygons.stl_reader import read
-from orbiframe_polygons.stl_writer import write
 
 test_reader_laws = contract_tests("reader", read, suffix=".stl", counterpart=write)
 test_writer_laws = contract_tests("writer", write, suffix=".stl", counterpart=read)

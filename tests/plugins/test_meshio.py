@@ -1,0 +1,108 @@
+from __future__ import annotations
+
+import meshio
+import numpy as np
+import pytest
+from orbiframe_meshio import cells
+from orbiframe_meshio.plugin import SUFFIXES
+from orbiframe_meshio.reader import read
+from orbiframe_meshio.writer import write
+
+from orbiframe import FormatError, Polyhedron
+from orbiframe.testing import Lab, contract_tests
+
+test_reader_laws = contract_tests("reader", read, suffix=".vtu", counterpart=write)
+test_writer_laws = contract_tests("writer", write, suffix=".vtk", counterpart=read)
+
+POINTS = np.array([[0.1, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 1 / 3]])
+PYRAMID = Polyhedron.from_faces(POINTS, [[0, 1, 4], [3, 2, 1, 0], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
+
+
+@pytest.mark.parametrize("name", ["tetrahedron", "cube", "projective plane"])
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_every_declared_suffix_holds_triangles_and_quads(tmp_path, suffix, name):
+    made = Lab(tmp_path).polyhedra[name]
+    cells.save(tmp_path / f"a{suffix}", made)
+    found = cells.polyhedron_of(tmp_path / f"a{suffix}")
+    assert np.array_equal(found.offsets, made.offsets)
+    assert np.array_equal(found.tail, made.tail)
+    assert np.abs(found.vertices - made.vertices).max() < 1e-15
+
+
+@pytest.mark.parametrize("suffix", [".vtk", ".vtu", ".msh", ".mesh", ".inp"])
+def test_triangles_and_quads_side_by_side_keep_their_order(tmp_path, suffix):
+    cells.save(tmp_path / f"a{suffix}", PYRAMID)
+    found = cells.polyhedron_of(tmp_path / f"a{suffix}")
+    assert np.array_equal(found.offsets, PYRAMID.offsets)
+    assert np.array_equal(found.tail, PYRAMID.tail)
+
+
+@pytest.mark.parametrize("suffix", [".vtk", ".vtu"])
+def test_larger_polygons_where_the_format_holds_them(tmp_path, suffix):
+    prism = Lab(tmp_path).polyhedra["prism"]
+    cells.save(tmp_path / f"a{suffix}", prism)
+    assert np.array_equal(cells.polyhedron_of(tmp_path / f"a{suffix}").tail, prism.tail)
+
+
+@pytest.mark.parametrize("suffix", [".mesh", ".inp", ".dat", ".off", ".stl"])
+def test_what_meshio_would_lose_is_refused(tmp_path, suffix):
+    with pytest.raises(FormatError, match="meshio"):
+        cells.save(tmp_path / f"a{suffix}", Lab(tmp_path).polyhedra["prism"])
+
+
+def test_triangles_that_tecplot_would_turn_to_quads_are_refused(tmp_path):
+    with pytest.raises(FormatError, match="without loss"):
+        cells.save(tmp_path / "a.dat", PYRAMID)
+
+
+def test_lines_and_points_are_left_out_and_solids_refused(tmp_path):
+    path = tmp_path / "a.vtu"
+    flat = [("line", [[0, 1]]), ("triangle", [[0, 1, 2]]), ("vertex", [[3]])]
+    meshio.write(path, meshio.Mesh(POINTS, flat))
+    assert cells.polyhedron_of(path).tail.tolist() == [0, 1, 2]
+    meshio.write(path, meshio.Mesh(POINTS, [*flat, ("tetra", [[0, 1, 2, 4]])]))
+    with pytest.raises(FormatError, match=r"a\.vtu.*tetra"):
+        cells.polyhedron_of(path)
+    meshio.write(path, meshio.Mesh(POINTS, flat[:1]))
+    with pytest.raises(FormatError, match="no triangles"):
+        cells.polyhedron_of(path)
+
+
+def test_the_end_of_the_process_is_an_error(tmp_path):
+    path = tmp_path / "a.off"
+    path.write_text("COFF\n1 1 1\n")
+    with pytest.raises(FormatError, match=r"a\.off.*meshio failed"):
+        read(path)
+
+
+@pytest.mark.parametrize("bad", ["7", "-1"])
+def test_an_index_out_of_range_is_refused(tmp_path, bad):
+    path = tmp_path / "a.vtk"
+    path.write_text(
+        "# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 double\n0 0 0\n1 0 0\n0 1 0\n"
+        f"CELLS 1 4\n3 0 1 {bad}\nCELL_TYPES 1\n5\n"
+    )
+    with pytest.raises(FormatError, match=rf"a\.vtk.*vertex {bad}"):
+        cells.polyhedron_of(path)
+
+
+def test_xml_with_entities_is_not_opened(tmp_path):
+    path = tmp_path / "a.vtu"
+    path.write_text('<?xml version="1.0"?>\n<!DOCTYPE x [<!ENTITY a "aaaa">]>\n<VTKFile>&a;</VTKFile>\n')
+    with pytest.raises(FormatError, match="entities"):
+        cells.polyhedron_of(path)
+
+
+def test_a_huge_count_is_refused_within_its_limits(tmp_path):
+    path = tmp_path / "a.vtk"
+    path.write_text(
+        "# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 9000000000000 double\n0 0 0\n"
+    )
+    with pytest.raises(FormatError, match=r"a\.vtk"):
+        read(path, seconds=60)
+
+
+def test_what_is_left_out_is_named(tmp_path):
+    made = Polyhedron.from_corners(POINTS[:3], [0, 3], [0, 1, 2], normals=np.ones((3, 3)))
+    with pytest.warns(UserWarning, match=r"a\.vtk.*normals"):
+        write(tmp_path / "a.vtk", made)

@@ -1,0 +1,73 @@
+from __future__ import annotations
+
+import importlib.util
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from orbiframe_open3d.plugin import SUFFIXES
+from orbiframe_open3d.reader import read
+from orbiframe_open3d.writer import write
+
+from orbiframe import FormatError, PluginError, Polyhedron
+
+TETRAHEDRON = Polyhedron.from_faces(np.eye(4)[:, :3], [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])
+
+
+def obstacle() -> str | None:
+    """Why Open3D cannot be used here."""
+    if importlib.util.find_spec("open3d") is None:
+        return "open3d is not installed"
+    tried = subprocess.run([sys.executable, "-c", "import open3d"], capture_output=True, text=True, check=False)
+    return None if tried.returncode == 0 else f"open3d does not load: {tried.stderr.strip().splitlines()[-1]}"
+
+
+OBSTACLE = obstacle()
+needs_open3d = pytest.mark.skipif(OBSTACLE is not None, reason=str(OBSTACLE))
+
+
+@needs_open3d
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_triangles_survive_in_every_declared_format(tmp_path, suffix):
+    write(tmp_path / f"a{suffix}", TETRAHEDRON)
+    found = read(tmp_path / f"a{suffix}")
+    assert len(found.vertices) == 4
+    assert np.array_equal(found.vertices[found.tail], TETRAHEDRON.vertices[TETRAHEDRON.tail])
+
+
+@needs_open3d
+def test_what_is_no_mesh_is_refused(tmp_path):
+    (tmp_path / "a.glb").write_bytes(b"this is no mesh")
+    with pytest.raises(FormatError, match=r"a\.glb"):
+        read(tmp_path / "a.glb")
+
+
+@needs_open3d
+@pytest.mark.parametrize("name", ["../points.bin", "/etc/passwd", "%2e%2e/points.bin"])
+def test_a_gltf_opens_no_file_elsewhere(tmp_path, name):
+    path = tmp_path / "a.gltf"
+    path.write_text(json.dumps({"asset": {"version": "2.0"}, "buffers": [{"uri": name, "byteLength": 4}]}))
+    with pytest.raises(FormatError, match="own folder"):
+        read(path)
+
+
+@needs_open3d
+def test_a_ply_that_crashes_open3d_is_an_error(tmp_path):
+    path = tmp_path / "a.ply"
+    path.write_bytes(b"ply\nformat ascii 1.0\ncomment " + b"x" * 5_000_000 + b"\nend_header\n")
+    with pytest.raises(FormatError, match=r"a\.ply"):
+        read(path)
+
+
+@pytest.mark.skipif(OBSTACLE is None, reason="open3d works here")
+def test_where_open3d_is_missing_the_error_says_what_to_install(tmp_path):
+    (tmp_path / "a.glb").write_bytes(b"glTF")
+    with pytest.raises(PluginError, match="install"):
+        read(tmp_path / "a.glb")
+
+
+def test_larger_faces_are_refused(tmp_path):
+    with pytest.raises(FormatError, match=r"face 0 has 4 corners.*triangulate"):
+        write(tmp_path / "a.glb", Polyhedron.from_faces(np.eye(4)[:, :3], [[0, 1, 2, 3]]))
