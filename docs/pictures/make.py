@@ -9,9 +9,7 @@ from pathlib import Path
 import numpy as np
 import pyvista as pv
 
-from orbiframe import Polyhedron, formats, pipeline
-from orbiframe.config import Config
-from orbiframe.registry import Registry
+from orbiframe import Config, Polyhedron, Registry, fit, formats
 
 DATASETS = Path(__file__).parents[2] / "datasets"
 VIEW = [(5, -9, 11), (0, 0, 0), (0, 0, 1)]
@@ -27,7 +25,7 @@ def before_and_after(name: str, sizes: Sequence[int], target: Path) -> None:
     plotter.set_background("white", all_renderers=True)
     _show(plotter, 0, polyhedron, **EDGES)
     for column, size in enumerate(sizes, start=1):
-        smooth = pipeline.fit(polyhedron, Config.load(overrides=[f"basis.size={size}"]), registry).output
+        smooth = fit(polyhedron, Config.load(overrides=[f"basis.size={size}"]), registry).output
         _show(plotter, column, smooth, smooth_shading=True)
     plotter.screenshot(target, transparent_background=False)
     plotter.close()

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import re
 from dataclasses import replace
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -60,6 +62,14 @@ def _defaults(kind: str, name: str, registry: Registry) -> dict[str, str]:
     """The options of the default component of a step; of all that the pipeline may choose, where it is open."""
     chosen = {"parametrizer": list(pipeline.PARAMETRIZER.values())}.get(kind, []) if name in OPEN_NAMES else [name]
     return {o.name: str(o.default) for name in chosen for o in options_of(registry.load(kind, name))}
+
+
+@pytest.mark.parametrize("name", sorted(set(pipeline.PARAMETRIZER.values())))
+def test_every_choice_of_weights_is_named(name, registry):
+    weights = next(o for o in options_of(registry.load("parametrizer", name)) if o.name == "weights")
+    row = next(row for row in table_rows(section(REFERENCE / "config.md", "map")) if unquoted(row[0]) == "weights")
+    told = next(part for part in row[2].split(";") if part.strip().startswith(f"{name}:"))
+    assert set(get_args(weights.annotation)) <= set(re.findall(r"[\w-]+", told))
 
 
 def test_every_option_of_the_output_is_in_its_section():
