@@ -47,23 +47,24 @@ class Text:
 
     def lines(self, first: int, last: int) -> Text:
         """The lines first to last - 1 of the table."""
-        part = slice(first, last)
-        return replace(
-            self, begin=self.begin[part], end=self.end[part], number=self.number[part], words=self.words[part]
-        )
+        begin, end = self.begin[first:last], self.end[first:last]
+        start, stop = (int(begin[0]), int(end[-1])) if len(begin) else (0, 0)
+        number, words = self.number[first:last], self.words[first:last]
+        return Text(self.path, self.data[start:stop], begin - start, end - start, number, words)
 
     def only(self, wanted: Bools) -> Text:
         """The marked lines, with their bytes moved together."""
-        picked = replace(
-            self, begin=self.begin[wanted], end=self.end[wanted], number=self.number[wanted], words=self.words[wanted]
-        )
+        rows = np.flatnonzero(wanted)
+        if not len(rows) or rows[-1] - rows[0] + 1 == len(rows):
+            return self.lines(rows[0], rows[-1] + 1) if len(rows) else self.lines(0, 0)
+        begin, end = self.begin[rows], self.end[rows]
         marks = np.zeros(len(self.data) + 2, dtype=np.int8)
-        marks[picked.begin] += 1
-        marks[picked.end + 1] -= 1
+        marks[begin] += 1
+        marks[end + 1] -= 1
         data = np.append(self.data, np.uint8(NEWLINE))[np.cumsum(marks[:-1], dtype=np.int8).view(np.bool_)]
-        size = picked.end - picked.begin
+        size = end - begin
         begin = np.cumsum(size + 1) - (size + 1)
-        return replace(picked, data=data, begin=begin, end=begin + size)
+        return Text(self.path, data, begin, begin + size, self.number[rows], self.words[rows])
 
     def without_keyword(self, length: int) -> Text:
         """The same lines without their first word, of a known length."""
@@ -78,7 +79,7 @@ class Text:
 
     def numbers(self) -> Floats:
         """All words of all lines as finite numbers, in one array. Raises FormatError with the line of a bad word."""
-        values = parsed(self._block())
+        values = parsed(self.data[int(self.begin[0]) : int(self.end[-1])].tobytes()) if len(self) else np.empty(0)
         if values is None or len(values) != self.words.sum():
             self._blame()
         bad = np.flatnonzero(~np.isfinite(values))
@@ -91,9 +92,6 @@ class Text:
     def refuse(self, row: int, complaint: str) -> NoReturn:
         """Raise FormatError with the file and the line."""
         raise FormatError(f"{self.path}, line {self.number[row]}: {complaint}")
-
-    def _block(self) -> bytes:
-        return self.data[self.begin[0] : self.end[-1]].tobytes() if len(self) else b""
 
     def _blame(self) -> NoReturn:
         for row in range(len(self)):
