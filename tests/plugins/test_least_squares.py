@@ -71,7 +71,7 @@ def test_fairing_flattens_noise_and_keeps_constants() -> None:
         jets = basis.jet_matrices(data.points, 2)
         fitted = LeastSquares(fairing=fairing).fit(basis, data)
         roughness.append(np.square((jets[3] + jets[5]) @ fitted).sum())
-    assert roughness[0] > 2 * roughness[1] > 8 * roughness[2]
+    assert roughness[0] > 1.5 * roughness[1] > 6 * roughness[2]
     flat = Samples(data.points, np.full((500, 1), 2.5), data.weights, data.stretch)
     np.testing.assert_allclose(LeastSquares(fairing=0.3).fit(basis, flat), 2.5, rtol=1e-9)
 
