@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from orbiframe.errors import TopologyError
 from orbiframe.polyhedron import Polyhedron
+from orbiframe.topology import vector_areas
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -71,8 +72,7 @@ def edge_length_for(polyhedron: Polyhedron, vertices: int) -> float:
 
     Needle-like triangles need more: the length is doubled until no more than four times as many are added.
     """
-    corners = polyhedron.vertices[polyhedron.triangles]
-    area = float(np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()) / 2
+    area = float(np.linalg.norm(vector_areas(polyhedron), axis=1).sum())
     lengths = polyhedron.edge_lengths[polyhedron.representative]
     # Edges end up between half the longest and the longest: a vertex holds about 0.42 of its square.
     longest = max(float(np.sqrt(area / (0.42 * vertices))), 1e-9 * float(lengths.max()))

@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from orbiframe.errors import TopologyError
 from orbiframe.polyhedron import Polyhedron
 from orbiframe.topology import vector_areas
 
@@ -22,12 +23,16 @@ def triangulated(polyhedron: Polyhedron) -> Polyhedron:
     cut through its reflex corner), then the shorter one, then the one through the smaller vertex index. Larger faces
     lose their ear with the shortest diagonal, again and again, in the plane of their vector area. Triangles follow
     the order of the faces. No vertex is added, and diagonals become twins even where an edge with the same ends
-    exists. Complexity: linear for quadrilaterals, about quadratic in the corners of larger faces.
+    exists. Complexity: linear for quadrilaterals, about quadratic in the corners of larger faces. Raises TopologyError
+    for a face of fewer than three corners.
     """
     if polyhedron.is_triangular:
         return polyhedron
-    corners = _triangle_corners(polyhedron)
-    return _glued(polyhedron, corners)
+    small = np.flatnonzero(polyhedron.face_sizes < 3)
+    if len(small):
+        corners = polyhedron.face_sizes[small[0]]
+        raise TopologyError(f"face {small[0]} has {corners} corners, a polygon needs three; remove it from the mesh")
+    return _glued(polyhedron, _triangle_corners(polyhedron))
 
 
 def triangle_owner(polyhedron: Polyhedron) -> Ints:
@@ -48,7 +53,7 @@ def _triangle_corners(polyhedron: Polyhedron) -> Ints:
     corners[first[quads]] = start + (np.array([0, 1, 2]) + turn) % 4
     corners[first[quads] + 1] = start + (np.array([0, 2, 3]) + turn) % 4
     normals = vector_areas(polyhedron)
-    for face in np.flatnonzero(sizes > 4):
+    for face in map(int, np.flatnonzero(sizes > 4)):
         flat = _flattened(polyhedron.vertices[polyhedron.face_corners(face)], normals[face])
         corners[first[face] : first[face + 1]] = polyhedron.offsets[face] + _cut_ears(flat)
     return corners
@@ -67,7 +72,7 @@ def _quad_turns(polyhedron: Polyhedron, quads: Ints) -> Ints:
     tied = np.abs(length[1] - length[0]) <= _TIE * (length[0] + length[1])
     by_index = index[:, [1, 3]].min(axis=1) < index[:, [0, 2]].min(axis=1)
     shorter = np.where(tied, by_index, length[1] < length[0])
-    return np.where(worst[0] == worst[1], shorter, worst[1]).astype(np.intp)
+    return np.asarray(np.where(worst[0] == worst[1], shorter, worst[1]), dtype=np.intp)
 
 
 def _flattened(points: Floats, normal: Floats) -> Floats:
@@ -83,7 +88,7 @@ def _flattened(points: Floats, normal: Floats) -> Floats:
 
 @njit(cache=True)
 def _cross(a: Floats, b: Floats, c: Floats) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])  # type: ignore[no-any-return]
 
 
 @njit(cache=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -66,9 +67,10 @@ class _Stages:
         return result
 
 
-def fit(
-    mesh: Path | Polyhedron, config: Config, registry: Registry, progress: Progress = lambda stage, seconds: None
-) -> Result:
+def _silent(_stage: str, _seconds: float | None) -> None: ...
+
+
+def fit(mesh: str | Path | Polyhedron, config: Config, registry: Registry, progress: Progress = _silent) -> Result:
     """The smooth surface of a closed polyhedron, given as a file or as an object.
 
     progress: called with the name of each stage at its start (seconds None) and at its end. Raises FormatError,
@@ -76,7 +78,7 @@ def fit(
     """
     stages = _Stages(registry, progress)
     config = config.checked(registry)
-    polyhedron = stages("read", _read, mesh, config, registry) if isinstance(mesh, Path) else mesh
+    polyhedron = mesh if isinstance(mesh, Polyhedron) else stages("read", _read, Path(mesh), config, registry)
     surface_type = stages("topology", require_closed_surface, polyhedron)
     unit, origin, scale = _normalised(oriented(without_unused_vertices(polyhedron)))
     triangles = stages("triangles", triangulated, unit)
@@ -145,10 +147,11 @@ def _normalised(polyhedron: Polyhedron) -> tuple[Polyhedron, NDArray[np.float64]
     low, high = polyhedron.vertices.min(axis=0), polyhedron.vertices.max(axis=0)
     origin = low / 2 + high / 2
     centred = polyhedron.vertices - origin
-    largest = float(np.abs(centred).max())
-    scale = largest * 2 * float(np.linalg.norm((high - low) / (2 * largest))) if largest > 0 else 0.0
-    if not (np.isfinite(scale) and scale > 0):
+    scale = 2 * math.hypot(*(high / 2 - low / 2))
+    if scale == 0:
         raise TopologyError("all vertices of the mesh lie in one point; a surface needs some extent")
+    if not math.isfinite(scale):
+        raise TopologyError("the bounding box of the mesh has a diagonal beyond 1.8e308; scale the mesh down")
     return polyhedron.with_vertices(centred / scale), origin, scale
 
 

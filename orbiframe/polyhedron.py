@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -133,12 +134,13 @@ class Polyhedron:
     @cached_property
     def edge_lengths(self) -> Floats:
         """Length in space of every halfedge, (H,)."""
-        return np.linalg.norm(self.vertices[self.head] - self.vertices[self.tail], axis=1)
+        return np.asarray(np.linalg.norm(self.vertices[self.head] - self.vertices[self.tail], axis=1))
 
     @cached_property
     def diagonal(self) -> float:
         """Diagonal of the bounding box of the vertices."""
-        return float(np.linalg.norm(np.ptp(self.vertices, axis=0))) if len(self.vertices) else 0.0
+        # hypot, because the squares of very large and very small numbers are none.
+        return math.hypot(*np.ptp(self.vertices, axis=0)) if len(self.vertices) else 0.0
 
     def face_corners(self, face: int) -> Ints:
         """The vertices of one face in order."""

@@ -20,8 +20,8 @@ class Refinement:
     """A triangle mesh and its k-fold refinement.
 
     coarse, polyhedron: the mesh before and after; density: k; face: (V,) and barycentric: (V, 3), one place on the
-    coarse mesh for every vertex of the fine one. The first vertices are the coarse ones; the fine triangles of coarse
-    face f are f k^2 to (f + 1) k^2 - 1.
+    coarse mesh for every vertex of the fine one (face 0 for a vertex in no face). The first vertices are the coarse
+    ones; the fine triangles of coarse face f are f k^2 to (f + 1) k^2 - 1.
     """
 
     coarse: Polyhedron
@@ -39,18 +39,16 @@ def refine(polyhedron: Polyhedron, density: int) -> Refinement:
     """
     if density < 1:
         raise TopologyError(f"a refinement of {density} was asked for; 1 keeps the mesh, 2 quarters every triangle")
-    grid = _grid(density)
+    triangles, old, grid = polyhedron.triangles, len(polyhedron.vertices), _grid(density)
     points = _grid_indices(polyhedron, grid)
-    count = int(points.max()) + 1 if points.size else 0
-    face = np.empty(count, dtype=np.intp)
-    place = np.empty(count, dtype=np.intp)
+    count = old + polyhedron.edge_count * (density - 1) + polyhedron.face_count * len(grid.inner)
+    face, place = np.zeros(count, dtype=np.intp), np.zeros(count, dtype=np.intp)
     # Reversed, so that the first face that holds a vertex speaks for it.
     face[points[::-1]] = np.arange(len(points))[::-1, None]
     place[points[::-1]] = np.arange(points.shape[1])
     weights = grid.barycentric[place]
-    corners = polyhedron.vertices[polyhedron.triangles[face]]
-    vertices = np.einsum("nc,nci->ni", weights, corners)
-    vertices[: len(polyhedron.vertices)] = polyhedron.vertices
+    new = np.einsum("nc,nci->ni", weights[old:], polyhedron.vertices[triangles[face[old:]]])
+    vertices = np.concatenate([polyhedron.vertices, new])
     tail = points[:, grid.triangles.ravel()].ravel()
     twin, same = _fine_twins(polyhedron, grid)
     offsets = np.arange(polyhedron.face_count * density**2 + 1) * 3
@@ -78,7 +76,7 @@ def _grid(k: int) -> _Grid:
     sides.append([number[0, k - s] for s in range(k + 1)])
     inner = [number[i, j] for i, j in pairs if i > 0 and j > 0 and i + j < k]
     triangles = []
-    for i, j in ((i, j) for i in range(k) for j in range(k - i)):
+    for i, j in [pair for pair in pairs if sum(pair) < k]:
         triangles.append([number[i, j], number[i + 1, j], number[i, j + 1]])
         if i + j < k - 1:
             triangles.append([number[i + 1, j], number[i + 1, j + 1], number[i, j + 1]])

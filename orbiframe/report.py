@@ -81,12 +81,11 @@ def _map_report(triangulation: Triangulation) -> dict[str, Any]:
     }
 
 
-def _weighted_quantiles(
-    values: NDArray[np.float64], weights: NDArray[np.float64], levels: list[float]
-) -> list[float]:
+def _weighted_quantiles(values: NDArray[np.float64], weights: NDArray[np.float64], levels: list[float]) -> list[float]:
     order = np.argsort(values, kind="stable")
     share = np.cumsum(weights[order]) / weights.sum()
-    return [float(values[order[min(np.searchsorted(share, level), len(order) - 1)]]) for level in levels]
+    places = np.minimum(np.searchsorted(share, levels), len(order) - 1)
+    return [float(value) for value in values[order[places]]]
 
 
 def versions() -> dict[str, str]:

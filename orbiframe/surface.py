@@ -83,9 +83,8 @@ class OrbifoldSurface:
 
     def jet(self, points: Points) -> Jet:
         """Surface points with first and second derivatives. Raises FitError for a basis that has none."""
-        parts = [self._derivatives(part, 2) for part in _chunks(points)]
-        d = self.scale * np.concatenate(parts, axis=1)
-        return Jet(self.origin + d[0], np.stack(d[1:3], axis=1), np.stack(d[3:], axis=1))
+        value, first, second = self._unit_jet(points)
+        return Jet(self.origin + self.scale * value, self.scale * first, self.scale * second)
 
     def normals(self, points: Points) -> Floats:
         """Unit normals S1 x S2 / |S1 x S2| (n, 3), right-handed in the frame of the patch of each point."""
@@ -97,17 +96,9 @@ class OrbifoldSurface:
 
         The second form uses the covariant Hessian: what it lacks against plain second derivatives is tangential.
         """
-        jet = self.jet(points)
-        cross = np.cross(jet.first[:, 0], jet.first[:, 1])
-        element = np.linalg.norm(cross, axis=1)
-        normal = _unit(cross)
-        e, f, g = (np.einsum("ni,ni->n", jet.first[:, a], jet.first[:, b]) for a, b in ((0, 0), (0, 1), (1, 1)))
-        l, m, n = np.einsum("nki,ni->kn", jet.second, normal)
-        with np.errstate(all="ignore"):
-            square = element**2
-            gaussian = (l * n - m * m) / square
-            mean = (e * n - 2 * f * m + g * l) / (2 * square)
-        return Curvature(gaussian, mean, normal, element)
+        gaussian, mean, normal, element = self._unit_curvature(points)
+        s = self.scale
+        return Curvature(gaussian / s / s, mean / s, normal, element * s * s)
 
     def total_curvature(self, order: int = 4) -> float:
         """The integral of the Gaussian curvature over the surface: 2 pi chi by Gauss and Bonnet where it is immersed.
@@ -120,7 +111,7 @@ class OrbifoldSurface:
         for start in range(0, len(lifts), max(_CHUNK // order**2, 1)):
             part = slice(start, start + max(_CHUNK // order**2, 1))
             x, weights = triangle_points(geometry, lifts[part], order)
-            bent = self.curvature(Points(np.repeat(first_patch[part], order**2), x.reshape(-1, 3)))
+            bent = self._unit_curvature(Points(np.repeat(first_patch[part], order**2), x.reshape(-1, 3)))
             total += float(np.abs(weights).ravel() @ (bent.gaussian * bent.element))
         return total
 
@@ -139,6 +130,25 @@ class OrbifoldSurface:
         normals = _unit(np.cross(d[1], d[2])) * self.triangulation.face_signs[face, None]
         return mesh.polyhedron.with_vertices(self.origin + self.scale * d[0], normals)
 
+    def _unit_curvature(self, points: Points) -> Curvature:
+        """The curvature of the surface before it is scaled: no square of a very large or very small number."""
+        _, slopes, bends = self._unit_jet(points)
+        first, second = slopes[:, 0], slopes[:, 1]
+        cross = np.cross(first, second)
+        element, normal = np.linalg.norm(cross, axis=1), _unit(cross)
+        e, f, g = (_dot(a, b) for a, b in ((first, first), (first, second), (second, second)))
+        bend, twist, other = (_dot(bends[:, k], normal) for k in range(3))
+        with np.errstate(all="ignore"):
+            square = element**2
+            gaussian = (bend * other - twist**2) / square
+            mean = (e * other - 2 * f * twist + g * bend) / (2 * square)
+        return Curvature(gaussian, mean, normal, element)
+
+    def _unit_jet(self, points: Points) -> Jet:
+        """The jet of the surface before it is placed in space."""
+        d = np.concatenate([self._derivatives(part, 2) for part in _chunks(points)], axis=1)
+        return Jet(d[0], np.moveaxis(d[1:3], 0, 1), np.moveaxis(d[3:], 0, 1))
+
     def _derivatives(self, points: Points, order: int) -> Floats:
         if not isinstance(self.basis, DifferentiableBasis):
             raise FitError("this basis knows no derivatives; use one that does, such as 'gaussian'")
@@ -148,6 +158,10 @@ class OrbifoldSurface:
 def _chunks(points: Points) -> list[Points]:
     bounds = range(0, max(len(points.patch), 1), _CHUNK)
     return [Points(points.patch[b : b + _CHUNK], points.x[b : b + _CHUNK]) for b in bounds]
+
+
+def _dot(a: Floats, b: Floats) -> Floats:
+    return np.asarray(np.einsum("ni,ni->n", a, b))
 
 
 def _unit(vectors: Floats) -> Floats:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import os
 import zipfile
+import zlib
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +18,7 @@ from orbiframe.atlas import Atlas
 from orbiframe.bisection import Bisection
 from orbiframe.errors import FormatError
 from orbiframe.formats import Components, require_readable
+from orbiframe.options import checked_options
 from orbiframe.orbifold import Orbifold
 from orbiframe.polyhedron import Polyhedron
 from orbiframe.surface import OrbifoldSurface
@@ -24,6 +27,8 @@ from orbiframe.triangulation import Triangulation
 Arrays = Mapping[str, NDArray[Any]]
 
 _KIND, _VERSION = "orbiframe surface", 1
+# What numpy, zipfile and json raise where bytes are not those that were written; zipfile raises RuntimeError too.
+_DAMAGE = (ValueError, LookupError, TypeError, OSError, EOFError, RuntimeError, zipfile.BadZipFile, zlib.error)
 _MESH = ("vertices", "offsets", "tail", "twin", "same")
 
 
@@ -42,14 +47,15 @@ def save_surface(surface: OrbifoldSurface, path: Path) -> None:
     except OSError as error:
         raise FormatError(f"{path}: the surface cannot be written: {error.strerror}") from error
     finally:
-        unfinished.unlink(missing_ok=True)
+        with suppress(OSError):
+            unfinished.unlink()
 
 
 def load_surface(path: Path, registry: Components) -> OrbifoldSurface:
     """The surface of a file that `save_surface` wrote; evaluates to the same bits with the same versions.
 
     Raises FormatError, naming the file, for any other file; UsageError or PluginError where the geometry or the basis
-    is not installed.
+    is not installed or takes other options now.
     """
     path = Path(path)
     require_readable(path)
@@ -62,26 +68,24 @@ def load_surface(path: Path, registry: Components) -> OrbifoldSurface:
         triangulation = _triangulation(arrays, about, registry)
         coarse = _polyhedron(arrays, "coarse")
         refinement = Bisection(coarse, triangulation.polyhedron, arrays["side"], arrays["child"])
-    except (ValueError, KeyError, TypeError, OSError, EOFError, zipfile.BadZipFile) as error:
+        coefficients, origin, scale = arrays["coefficients"], arrays["origin"], float(arrays["scale"])
+        name, options = about["basis"], dict(about["options"])
+    except _DAMAGE as error:
         raise FormatError(
             f"{path}: this is not a whole surface file ({type(error).__name__}: {error}); make it with "
             "`orbiframe fit MESH -o OUT --save FILE`"
         ) from error
-    make = registry.load("basis", about["basis"])
-    basis: Any = make(triangulation.orbifold, triangulation, **about["options"])
-    return OrbifoldSurface(
-        triangulation,
-        refinement,
-        basis,
-        arrays["coefficients"],
-        arrays["origin"],
-        float(arrays["scale"]),
-        about["basis"],
-        about["options"],
-    )
+    make = registry.load("basis", name)
+    basis: Any = make(triangulation.orbifold, triangulation, **checked_options(make, options, "basis", {}))
+    if basis.size != len(coefficients):
+        raise FormatError(
+            f"{path}: the file has {len(coefficients)} coefficients and the installed basis '{name}' {basis.size} "
+            "functions; install the version of its plugin that made the file, or fit the mesh again"
+        )
+    return OrbifoldSurface(triangulation, refinement, basis, coefficients, origin, scale, name, options)
 
 
-def _arrays(surface: OrbifoldSurface) -> dict[str, NDArray[Any]]:
+def _arrays(surface: OrbifoldSurface) -> dict[str, Any]:
     triangulation, orbifold = surface.triangulation, surface.orbifold
     atlas = orbifold.atlas
     about = {

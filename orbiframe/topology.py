@@ -50,6 +50,14 @@ class Defect:
     where: str
     fatal: bool
 
+    def __str__(self) -> str:
+        """Count and kind, such as "4 open edges" or "1 duplicate face"."""
+        kind = self.kind
+        if self.count == 1:
+            for many, one in (("vertices", "vertex"), ("faces", "face"), ("edges", "edge")):
+                kind = kind.replace(many, one)
+        return f"{self.count} {kind}"
+
 
 def surface_type(polyhedron: Polyhedron) -> SurfaceType:
     """The surface that the faces make: Euler characteristic, orientability, components and genus.
@@ -59,7 +67,7 @@ def surface_type(polyhedron: Polyhedron) -> SurfaceType:
     components, sheets, _ = _face_sheets(polyhedron)
     used = int(_used_vertices(polyhedron).sum())
     chi = used - polyhedron.edge_count + polyhedron.face_count
-    closed = bool((polyhedron.twin >= 0).all()) and polyhedron.face_count > 0
+    closed = polyhedron.face_count > 0 and bool((polyhedron.face_sizes > 0).all() and (polyhedron.twin >= 0).all())
     orientable = sheets == 2 * components
     is_surface = closed and components == 1 and not len(_pinched_vertices(polyhedron))
     genus = (2 - chi) // (2 if orientable else 1) if is_surface else None
@@ -69,6 +77,7 @@ def surface_type(polyhedron: Polyhedron) -> SurfaceType:
 def defects(polyhedron: Polyhedron) -> list[Defect]:
     """Everything that keeps a polyhedron from being one closed connected surface, or that a user should know of."""
     found = [
+        _not_finite(polyhedron),
         _few_corners(polyhedron),
         _repeated_vertices(polyhedron),
         _duplicate_faces(polyhedron),
@@ -89,7 +98,7 @@ def require_closed_surface(polyhedron: Polyhedron) -> SurfaceType:
         raise TopologyError("the mesh has no faces; give a closed polyhedron")
     fatal = [defect for defect in defects(polyhedron) if defect.fatal]
     if fatal:
-        reasons = "; ".join(f"{defect.count} {defect.kind} ({defect.where})" for defect in fatal)
+        reasons = "; ".join(f"{defect} ({defect.where})" for defect in fatal)
         raise TopologyError(
             f"the mesh is not one closed connected surface: {reasons}; "
             "`orbiframe info` lists all defects, mend them in a mesh editor and try again"
@@ -136,10 +145,9 @@ def without_unused_vertices(polyhedron: Polyhedron) -> Polyhedron:
     if used.all():
         return polyhedron
     number = np.cumsum(used) - 1
-    kept = {
-        name: None if (values := getattr(polyhedron, name)) is None else values[used] for name in ("normals", "colors")
-    }
-    return replace(polyhedron, vertices=polyhedron.vertices[used], tail=number[polyhedron.tail], **kept)
+    normals, colors = (None if a is None else a[used] for a in (polyhedron.normals, polyhedron.colors))
+    tail = number[polyhedron.tail]
+    return replace(polyhedron, vertices=polyhedron.vertices[used], tail=tail, normals=normals, colors=colors)
 
 
 def _used_vertices(polyhedron: Polyhedron) -> Bools:
@@ -158,7 +166,7 @@ def _face_sheets(polyhedron: Polyhedron) -> tuple[int, int, Ints]:
     cover = coo_array((np.ones(len(rows)), (rows, columns)), shape=(2 * count, 2 * count)).tocsr()
     components, _ = connected_components(plain, directed=False)
     sheets, label = connected_components(cover, directed=False)
-    return components, sheets, label
+    return components, sheets, label.astype(np.intp)
 
 
 def fan_labels(polyhedron: Polyhedron) -> tuple[int, Ints]:
@@ -172,7 +180,7 @@ def fan_labels(polyhedron: Polyhedron) -> tuple[int, Ints]:
     ends = np.where(same, polyhedron.next[twin], twin)
     graph = graph + coo_array((np.ones(len(glued)), (polyhedron.next[glued], ends)), shape=(size, size)).tocsr()
     count, label = connected_components(graph, directed=False)
-    return int(count), label
+    return int(count), label.astype(np.intp)
 
 
 def _pinched_vertices(polyhedron: Polyhedron) -> Ints:
@@ -188,6 +196,13 @@ def _listed(items: Iterable[object], limit: int = 5) -> str:
     return ", ".join(shown[:limit]) + (", …" if len(shown) > limit else "")
 
 
+def _not_finite(polyhedron: Polyhedron) -> Defect | None:
+    bad = np.flatnonzero(~np.isfinite(polyhedron.vertices).all(axis=1))
+    return (
+        Defect("vertices without finite coordinates", len(bad), f"vertices {_listed(bad)}", True) if len(bad) else None
+    )
+
+
 def _few_corners(polyhedron: Polyhedron) -> Defect | None:
     bad = np.flatnonzero(polyhedron.face_sizes < 3)
     return Defect("faces of fewer than 3 corners", len(bad), f"faces {_listed(bad)}", True) if len(bad) else None
@@ -197,7 +212,7 @@ def _repeated_vertices(polyhedron: Polyhedron) -> Defect | None:
     order = np.lexsort((polyhedron.tail, polyhedron.face))
     face, tail = polyhedron.face[order], polyhedron.tail[order]
     bad = np.unique(face[1:][(face[1:] == face[:-1]) & (tail[1:] == tail[:-1])])
-    return Defect("faces that repeat a vertex", len(bad), f"faces {_listed(bad)}", True) if len(bad) else None
+    return Defect("faces with a repeated vertex", len(bad), f"faces {_listed(bad)}", True) if len(bad) else None
 
 
 def _duplicate_faces(polyhedron: Polyhedron) -> Defect | None:
@@ -289,17 +304,18 @@ def _coincident(polyhedron: Polyhedron) -> Defect | None:
 
 
 def _zero_area(polyhedron: Polyhedron) -> Defect | None:
-    if not polyhedron.face_count:
+    largest = np.abs(polyhedron.vertices).max(initial=0.0)
+    if not np.isfinite(largest):
         return None
-    areas = np.linalg.norm(vector_areas(polyhedron), axis=1)
-    bad = np.flatnonzero(areas <= 1e-14 * polyhedron.diagonal**2)
+    # By a power of two, so that no digit changes: the squares of very large and very small numbers are none.
+    unit = polyhedron.with_vertices(np.ldexp(polyhedron.vertices, -np.frexp(largest)[1]))
+    bad = np.flatnonzero(np.linalg.norm(vector_areas(unit), axis=1) <= 1e-14 * unit.diagonal**2)
     return Defect("faces without area", len(bad), f"faces {_listed(bad)}", False) if len(bad) else None
 
 
 def vector_areas(polyhedron: Polyhedron) -> NDArray[np.float64]:
     """The area of every face times its normal, (F, 3): half the sum of the cross products round the face."""
-    first = polyhedron.vertices[polyhedron.tail[np.minimum(polyhedron.offsets[:-1], len(polyhedron.tail) - 1)]]
-    origin = first[polyhedron.face]
+    origin = polyhedron.vertices[polyhedron.tail[polyhedron.offsets[polyhedron.face]]]
     a = polyhedron.vertices[polyhedron.tail] - origin
     b = polyhedron.vertices[polyhedron.head] - origin
     cross = np.cross(a, b) / 2

@@ -47,7 +47,7 @@ class Triangulation:
     def lifts(self) -> Floats:
         """The corners of every triangle in the frame of the patch of its first corner, (F, 3, 3): [face, corner]."""
         g = self.orbifold.atlas.isometry[self._corner_transitions]
-        return np.einsum("fcij,fcj->fci", g, self.points[self.polyhedron.triangles])
+        return np.asarray(np.einsum("fcij,fcj->fci", g, self.points[self.polyhedron.triangles]))
 
     def locate(self, face: Ints, barycentric: Floats) -> Points:
         """The points of X/H at barycentric coordinates (n, 3) in triangles (n,): projective interpolation.
@@ -76,7 +76,10 @@ class Triangulation:
         graph = coo_array((np.ones(len(rows)), (rows, columns)), shape=(2 * count, 2 * count)).tocsr()
         sheets, label = connected_components(graph, directed=False)
         if sheets != 2:
-            raise MapError("the transitions of the map reverse orientation inconsistently; the group is not that of the mesh")
+            raise MapError(
+                "the transitions of the map do not reverse orientation as the mesh does: they belong to another "
+                "surface; let the group come from the mesh (group.method = 'mesh')"
+            )
         sign = np.where(label[:count] == label[0], 1.0, -1.0)
         return sign if float(sign @ np.sign(self._raw_areas)) >= 0 else -sign
 
