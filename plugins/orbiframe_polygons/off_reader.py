@@ -43,7 +43,8 @@ def read(path: Path) -> Polyhedron:
 
     The word OFF may be missing, and the counts may follow it on its line. Texture coordinates (ST) are skipped. Colours
     count to 1 or to 255. Raises FormatError with the line for anything that is not so, for 4OFF and nOFF (points of
-    another dimension), for binary files, and where the counts differ from what follows.
+    another dimension), for binary files, and where the counts differ from what follows; only faces beyond the declared
+    ones are left out with a warning.
 
     Source: http://www.geomview.org/docs/html/OFF.html
     """
@@ -52,7 +53,7 @@ def read(path: Path) -> Polyhedron:
     _require_counts(text, header)
     split = header.row + header.vertices
     vertices, normals, colors = _vertices(text.lines(header.row, split), header)
-    offsets, tail, face_colors = _faces(text.lines(split, len(text)), header.vertices)
+    offsets, tail, face_colors = _faces(text.lines(split, split + header.faces), header.vertices)
     return Polyhedron.from_corners(vertices, offsets, tail, normals=normals, colors=colors, face_colors=face_colors)
 
 
@@ -91,7 +92,19 @@ def _require_counts(text: Text, header: Header) -> None:
             f"declared, but {present} lines follow; is the file cut short?"
         )
     if present > declared:
-        text.refuse(header.row + declared, "the file goes on after its last face; do the counts fit the lines?")
+        _require_faces_alone(text, header, header.row + declared)
+
+
+def _require_faces_alone(text: Text, header: Header, row: int) -> None:
+    """Faces beyond the declared ones are left out with a warning, as other readers do; anything else is refused."""
+    try:
+        offsets, _, _ = _faces(text.lines(row, len(text)), header.vertices)
+    except FormatError:
+        text.refuse(row, "the file goes on after its last face; do the counts fit the lines?")
+    place = f"{text.path}, line {text.number[row]}"
+    count = len(offsets) - 1
+    found = "1 face line" if count == 1 else f"{count} face lines"
+    warnings.warn(f"{place}: {found} more than the {header.faces} declared; left out", stacklevel=2)
 
 
 def _vertices(text: Text, header: Header) -> tuple[Floats, Floats | None, Floats | None]:

@@ -78,7 +78,6 @@ def test_colours_of_some_faces_only_are_left_out_with_a_warning(tmp_path):
         (PLAIN.replace("4 4 6", "4000000000 4 6"), "line 2.*cut short"),
         (PLAIN.replace("4 4 6", "4 999999999999999999999 6"), "line 2"),
         (PLAIN[: len(PLAIN) - 9], "line 2.*cut short"),
-        (PLAIN.replace("4 4 6", "4 3 6"), "line 10.*goes on"),
         (PLAIN + "0 0\n", "line 11.*goes on"),
         (PLAIN.replace("1 0 0", "1 nan 0"), "line 4.*'nan'"),
         (PLAIN.replace("1 0 0", "1 -inf 0"), "line 4.*'-inf'"),
@@ -117,3 +116,10 @@ def test_all_that_a_polyhedron_has_survives(tmp_path):
     found = read(tmp_path / "a.off")
     for table in ("vertices", "offsets", "tail", *tables):
         assert np.array_equal(getattr(found, table), getattr(made, table)), table
+
+
+def test_faces_beyond_the_declared_ones_are_left_out_with_a_warning(tmp_path: Path) -> None:
+    path = tmp_path / "more.off"
+    path.write_text(PLAIN.replace("4 4 6", "4 3 6"))
+    with pytest.warns(UserWarning, match="line 10: 1 face line more than the 3"):
+        assert read(path).face_count == 3
