@@ -6,16 +6,16 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
 
 from orbiframe import MapError, Polyhedron
-from orbiframe_parametrizers.elimination import elimination_order, factorised
+from orbiframe_parametrizers.elimination import Elimination
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
 
 _TOLERANCE = 1e-11
+_ACCEPTED = 1e-9
 _STEPS = 100
+_HALVINGS = 40
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,122 +36,129 @@ def packed(mesh: Polyhedron, curvature: int, *, without_face: int | None = None)
     Unknown u = ln tanh(r/2) (ln r in the plane), Newton on the convex energy whose gradient is 2 pi minus the angle
     sum; its Hessian is symmetric with positive off-diagonal weights. It exists and is unique (up to scale in the
     plane) for every triangulation of a closed surface with chi < 0 (chi = 0), orientable or not: Koebe, Andreev,
-    Thurston; Bobenko and Springborn 2004. Raises MapError if 100 steps do not reach an error of 1e-11 in the angles.
+    Thurston; Bobenko and Springborn 2004. Raises MapError if 100 steps do not bring all angle sums to 2 pi.
     """
-    law = _Law(mesh, curvature, without_face)
-    u = law.start
-    angles = law.angles(u)
-    error = law.curvatures(angles)
+    law = PackingLaw(mesh, curvature, without_face)
+    state = law.state(law.start)
     # Rounding: an angle sum of n terms carries about n eps; below that no step can help.
     tolerance = max(_TOLERANCE, 4e-16 * float(np.bincount(mesh.tail).max()))
-    for step in range(_STEPS):
-        if np.abs(error).max() < tolerance:
-            radii = law.radii(u)
-            return Packing(radii, radii[mesh.tail] + radii[mesh.head], angles.ravel(), step)
-        direction = law.newton_direction(u, angles, error)
-        u, angles, error, moved = law.search(u, direction, error)
-        if not moved:
+    steps = 0
+    while state.worst >= tolerance and steps < _STEPS:
+        further = law.search(state, law.newton_direction(state))
+        if further is None:
             break
-    if np.abs(error).max() < 1e-9:
-        radii = law.radii(u)
-        return Packing(radii, radii[mesh.tail] + radii[mesh.head], angles.ravel(), _STEPS)
-    raise MapError(
-        f"the circle packing stopped at an angle error of {np.abs(error).max():.1e} (1e-11 is required); "
-        "look for needle-like parts of the mesh with `orbiframe info`, or refine the mesh"
-    )
+        state, steps = further, steps + 1
+    if not state.worst < _ACCEPTED:
+        raise MapError(
+            f"the circle packing stopped at an angle error of {state.worst:.1e} ({_ACCEPTED:.0e} is allowed); "
+            "look for needle-like parts of the mesh with `orbiframe info`, or refine the mesh"
+        )
+    radii = law.radii(state.u)
+    return Packing(radii, radii[mesh.tail] + radii[mesh.head], state.angles.ravel(), steps)
 
 
-class _Law:
+@dataclass(frozen=True, eq=False)
+class State:
+    """Where the iteration stands: unknowns u (V,), corner angles (F, 3), 2 pi minus the angle sums (V,)."""
+
+    u: Floats
+    angles: Floats
+    curvatures: Floats
+
+    @property
+    def worst(self) -> float:
+        """The largest error of an angle sum."""
+        return float(np.abs(self.curvatures).max())
+
+
+class PackingLaw:
     """Angles of three mutually tangent circles and their derivatives, for one mesh and one curvature."""
 
-    def __init__(self, mesh: Polyhedron, curvature: int, without_face: int | None) -> None:
+    def __init__(self, mesh: Polyhedron, curvature: int, without_face: int | None = None) -> None:
+        self.mesh = mesh
         self.curvature = curvature
         self.triangles = mesh.triangles
-        self.fixed = np.array([], dtype=np.intp) if without_face is None else mesh.triangles[without_face]
-        self.packed_faces = np.ones(len(mesh.triangles))
-        if without_face is not None:
-            self.packed_faces[without_face] = 0.0
         self.count = len(mesh.vertices)
-        once = mesh.representative
-        self.order = elimination_order(mesh.vertices, mesh.tail[once], mesh.head[once])
-        self.place = np.empty(self.count, dtype=np.intp)
-        self.place[self.order] = np.arange(self.count)
+        self.missing = np.arange(mesh.face_count) == without_face
+        self.fixed = np.zeros(self.count, dtype=np.bool_)
+        self.fixed[self.triangles[self.missing]] = True
+        once = np.flatnonzero(mesh.representative)
+        self.edges = once, mesh.twin[once]
+        self.elimination = Elimination.of(mesh)
 
     @property
     def start(self) -> Floats:
-        return np.full(self.count, np.log(np.tanh(0.025)) if self.curvature else 0.0)
+        """Equal radii; in the hyperbolic plane those for which the mean corner angle is right, hence the total area.
+
+        Three equal circles have tan^2(theta/2) = sinh r / sinh 3r = 1 / (3 + 4 sinh^2 r).
+        """
+        if self.curvature == 0:
+            return np.zeros(self.count)
+        half_angle = np.pi * self.count / (3 * len(self.triangles))
+        sinh = np.sqrt(np.tan(half_angle) ** -2 - 3) / 2
+        return np.full(self.count, np.log(sinh / (1 + np.hypot(1, sinh))))
+
+    def state(self, u: Floats) -> State:
+        """The angles and their errors for given unknowns."""
+        angles = self._angles(u)
+        counted = np.where(self.missing[:, None], 0.0, angles)
+        sums = np.bincount(self.triangles.ravel(), weights=counted.ravel(), minlength=self.count)
+        return State(u, angles, np.where(self.fixed, 0.0, 2 * np.pi - sums))
 
     def radii(self, u: Floats) -> Floats:
-        return 2 * np.arctanh(np.exp(u)) if self.curvature else np.exp(u)
+        """The radii (V,) for the unknowns u."""
+        return np.asarray(2 * np.arctanh(np.exp(u)) if self.curvature else np.exp(u))
 
     def _sine(self, length: Floats) -> Floats:
-        return np.sinh(length) if self.curvature else length
+        return np.asarray(np.sinh(length)) if self.curvature else length
 
-    def angles(self, u: Floats) -> Floats:
+    def _angles(self, u: Floats) -> Floats:
         """Corner angles (F, 3): tan^2(theta_0 / 2) = sinh r1 sinh r2 / (sinh r0 sinh(r0 + r1 + r2))."""
         r = self.radii(u)[self.triangles]
         s = self._sine(r)
         whole = self._sine(r.sum(axis=1))
-        return 2 * np.arctan(np.sqrt(np.roll(s, -1, 1) * np.roll(s, -2, 1) / (s * whole[:, None])))
+        return np.asarray(2 * np.arctan(np.sqrt(np.roll(s, -1, 1) * np.roll(s, -2, 1) / (s * whole[:, None]))))
 
-    def curvatures(self, angles: Floats) -> Floats:
-        """2 pi minus the angle sum at every vertex, (V,); nothing at a vertex of fixed radius."""
-        sums = np.bincount(
-            self.triangles.ravel(), weights=(angles * self.packed_faces[:, None]).ravel(), minlength=self.count
-        )
-        error = 2 * np.pi - sums
-        error[self.fixed] = 0.0
-        return error
+    def newton_direction(self, state: State) -> Floats:
+        """The step (V,) of Newton's method; 0 at fixed vertices."""
+        coupling, diagonal = self.hessian(state)
+        if self.curvature == 0 and not self.fixed.any():
+            # Scale is free in the plane: the curvatures sum to zero, so holding one vertex changes nothing else.
+            diagonal[0] += diagonal.mean()
+        once, _ = self.edges
+        solve = self.elimination.solver(self.mesh.tail[once], self.mesh.head[once], -coupling, diagonal)
+        return solve(-state.curvatures)
 
-    def newton_direction(self, u: Floats, angles: Floats, error: Floats) -> Floats:
-        matrix = self._hessian(u, angles)
-        solution = np.empty(self.count)
-        solution[self.order] = factorised(matrix).solve(-error[self.order])
-        return solution
-
-    def _hessian(self, u: Floats, angles: Floats) -> coo_array:
-        """Minus the derivative of the angle sums, in elimination order."""
-        r = self.radii(u)[self.triangles]
+    def hessian(self, state: State) -> tuple[Floats, Floats]:
+        """The derivatives of the curvatures: minus the entry at every edge, (E,), and the diagonal, (V,)."""
+        angles = state.angles
+        r = self.radii(state.u)[self.triangles]
         s = self._sine(r)
         opposite = self._sine(np.roll(r, -1, 1) + np.roll(r, -2, 1))
         area = np.roll(opposite, -1, 1) * np.roll(opposite, -2, 1) * np.sin(angles)
-        ratio = opposite / area
+        ratio = np.where(self.missing[:, None], 0.0, opposite / area)
         versed = 2 * np.sin(angles / 2) ** 2
-        rows, columns, values = [], [], []
-        for corner in range(3):
-            after, before = (corner + 1) % 3, (corner + 2) % 3
-            here = self.triangles[:, corner]
-            rows += [here, here, here]
-            columns += [self.triangles[:, after], self.triangles[:, before], here]
-            cosines = np.cos(angles[:, after]) + np.cos(angles[:, before])
-            values += [
-                -s[:, after] * ratio[:, corner] * versed[:, after],
-                -s[:, before] * ratio[:, corner] * versed[:, before],
-                s[:, corner] * ratio[:, corner] * cosines,
-            ]
-        i, j = self.place[np.concatenate(rows)], self.place[np.concatenate(columns)]
-        data = np.concatenate(values) * np.tile(self.packed_faces, 9)
-        if len(self.fixed):
-            held = np.isin(i, self.place[self.fixed]) | np.isin(j, self.place[self.fixed])
-            data[held] = 0.0
-        if self.curvature == 0:
-            # Scale is free in the plane: the curvatures sum to zero, so holding one vertex changes nothing else.
-            held = self.place[self.fixed] if len(self.fixed) else np.array([0])
-            i, j = np.append(i, held), np.append(j, held)
-            data = np.append(data, np.full(len(held), np.abs(data).mean()))
-        return coo_array((data, (i, j)), shape=(self.count, self.count)).tocsc()
+        cosine = np.cos(angles)
+        to_next = (np.roll(s * versed, -1, 1) * ratio).ravel()
+        own = s * ratio * (np.roll(cosine, -1, 1) + np.roll(cosine, -2, 1))
+        once, twin = self.edges
+        held = self.fixed[self.mesh.tail[once]] | self.fixed[self.mesh.head[once]]
+        coupling = np.where(held, 0.0, to_next[once] + to_next[twin])
+        diagonal = np.bincount(self.triangles.ravel(), weights=own.ravel(), minlength=self.count)
+        return coupling, np.where(self.fixed, 1.0, diagonal)
 
-    def search(self, u: Floats, step: Floats, error: Floats) -> tuple[Floats, Floats, Floats, bool]:
-        """The longest of 1, 1/2, 1/4, ... steps that keeps u < 0 and makes the error fall, or the slope keep its sign."""
-        size = 1.0
-        slope = float(error @ step)
-        for _ in range(40):
-            trial = u + size * step
-            if self.curvature == 0 or trial.max() < 0:
-                angles = self.angles(trial)
-                new = self.curvatures(angles)
-                falls = np.linalg.norm(new) < np.linalg.norm(error)
-                if np.isfinite(new).all() and (falls or float(new @ step) * slope > 0):
-                    return trial, angles, new, True
-            size /= 2
-        return u, self.angles(u), error, False
+    def search(self, state: State, step: Floats) -> State | None:
+        """The state after the longest of 1, 1/2, 1/4, ... steps that is good, or None.
+
+        Good: u < 0 (curvature -1), and the error falls or the slope of the energy keeps its sign.
+        """
+        slope = float(state.curvatures @ step)
+        for halving in range(_HALVINGS):
+            u = state.u + step / 2**halving
+            if self.curvature and not u.max() < 0:
+                continue
+            trial = self.state(u)
+            falls = np.linalg.norm(trial.curvatures) < np.linalg.norm(state.curvatures)
+            if np.isfinite(trial.worst) and (falls or float(trial.curvatures @ step) * slope > 0):
+                return trial
+        return None

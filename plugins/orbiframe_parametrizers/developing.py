@@ -7,7 +7,18 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import Atlas, Geometry, MapError, Orbifold, Polyhedron, Triangulation, dijkstra_forest, edge_graph, farthest_points
+from orbiframe import (
+    Atlas,
+    Geometry,
+    MapError,
+    Orbifold,
+    Polyhedron,
+    SurfaceType,
+    Triangulation,
+    dijkstra_forest,
+    edge_graph,
+    farthest_points,
+)
 from orbiframe_parametrizers.relations import with_relations
 
 Floats = NDArray[np.float64]
@@ -18,7 +29,7 @@ _SAME = 1e-4
 
 
 def developed(
-    mesh: Polyhedron, geometry: Geometry, lengths: Floats, angles: Floats, *, patch_radius: float, euler_characteristic: int, orientable: bool
+    mesh: Polyhedron, geometry: Geometry, lengths: Floats, angles: Floats, *, surface: SurfaceType, patch_radius: float
 ) -> Triangulation:
     """The triangulation of X/H whose edges have the given lengths (H,) and whose corners have the given angles (H,).
 
@@ -37,10 +48,11 @@ def developed(
     inverse = np.concatenate([[0], 1 + (np.arange(len(tail) - 1) ^ 1)])
     points = geometry.settle(frames[..., 0])
     atlas = Atlas(geometry, np.full(int(patch.max()) + 1, np.inf), tail, head, inverse, isometry)
-    area = 2 * np.pi * abs(euler_characteristic)
-    draft = Triangulation(Orbifold(atlas, euler_characteristic, orientable, area or 1.0), mesh, patch, points, transition)
-    if not area:
-        draft = replace(draft, orbifold=Orbifold(atlas, 0, orientable, float(draft.areas.sum())))
+    area = 2 * np.pi * abs(surface.euler_characteristic)
+    orbifold = Orbifold(atlas, surface.euler_characteristic, surface.orientable, area)
+    draft = Triangulation(orbifold, mesh, patch, points, transition)
+    if geometry.curvature == 0:
+        draft = replace(draft, orbifold=replace(orbifold, area=float(draft.areas.sum())))
     return with_patch_radii(draft)
 
 
@@ -107,7 +119,7 @@ def _patch_frames(
     centres = farthest_points(graph, len(mesh.vertices), radius=patch_radius).chosen
     forest = dijkstra_forest(graph, centres)
     frames = np.broadcast_to(np.eye(3), (len(mesh.vertices), 3, 3)).copy()
-    for generation in _generations(forest.parent, forest.order):
+    for generation in _generations(forest.parent):
         link = forest.link[generation]
         halfedge = graph.halfedge[link]
         step = steps[halfedge]
@@ -116,7 +128,7 @@ def _patch_frames(
     return forest.owner, frames
 
 
-def _generations(parent: Ints, order: Ints) -> list[Ints]:
+def _generations(parent: Ints) -> list[Ints]:
     """The vertices of a forest without its roots, by their number of steps from a root."""
     depth = np.zeros(len(parent), dtype=np.intp)
     active = np.flatnonzero(parent >= 0)
@@ -130,9 +142,7 @@ def _generations(parent: Ints, order: Ints) -> list[Ints]:
     return [by_depth[bounds[d] : bounds[d + 1]] for d in range(1, int(depth.max()) + 1)]
 
 
-def _classes(
-    mesh: Polyhedron, geometry: Geometry, patch: Ints, labels: Floats
-) -> tuple[Ints, Ints, Ints, Floats]:
+def _classes(mesh: Polyhedron, geometry: Geometry, patch: Ints, labels: Floats) -> tuple[Ints, Ints, Ints, Floats]:
     """The transition of every halfedge (H,), and the tails, heads and isometries of the transitions.
 
     Labels of one homotopy class between two patches agree up to rounding; the first halfedge in each round speaks for
@@ -169,7 +179,7 @@ def _classes(
 
 
 def _close(a: Floats, b: Floats) -> Bools:
-    return np.abs(a - b).max(axis=(1, 2)) < _SAME * np.maximum(1.0, np.abs(b).max(axis=(1, 2)))
+    return np.asarray(np.abs(a - b).max(axis=(1, 2)) < _SAME * np.maximum(1.0, np.abs(b).max(axis=(1, 2))))
 
 
 def with_patch_radii(triangulation: Triangulation) -> Triangulation:
@@ -177,14 +187,14 @@ def with_patch_radii(triangulation: Triangulation) -> Triangulation:
     mesh, atlas = triangulation.polyhedron, triangulation.orbifold.atlas
     transition = triangulation.transition
     radius = np.zeros(atlas.patch_count)
-    for here, there, across in (
-        (mesh.tail, mesh.head, transition),
-        (mesh.head, mesh.tail, atlas.inverse[transition]),
+    own, far = triangulation.points[mesh.tail], triangulation.points[mesh.head]
+    back = atlas.isometry[atlas.inverse[transition]]
+    for vertex, x in (
+        (mesh.tail, own),
+        (mesh.tail, atlas.geometry.act(atlas.isometry[transition], far)),
+        (mesh.head, atlas.geometry.act(back, own)),
     ):
-        for vertex, by in ((here, None), (there, across)):
-            x = triangulation.points[vertex]
-            x = x if by is None else atlas.geometry.act(atlas.isometry[by], x)
-            np.maximum.at(radius, triangulation.patch[here], atlas.geometry.distance(atlas.geometry.origin, x))
+        np.maximum.at(radius, triangulation.patch[vertex], atlas.geometry.distance(atlas.geometry.origin, x))
     if not np.isfinite(radius).all():
         raise MapError("the patches of X/H could not be laid out: an edge is too long; refine the mesh")
     orbifold = replace(triangulation.orbifold, atlas=replace(atlas, radius=radius))

@@ -34,9 +34,7 @@ def double_cover(mesh: Polyhedron) -> DoubleCover:
     other = np.where(mesh.same, size, 0)
     twin = np.concatenate([mesh.twin + other, mesh.twin + size - other])
     offsets = np.concatenate([mesh.offsets, mesh.offsets[1:] + size])
-    sheets = Polyhedron(
-        mesh.vertices, offsets, np.tile(mesh.tail, 2), twin, np.tile(mesh.same, 2)
-    )
+    sheets = Polyhedron(mesh.vertices, offsets, np.tile(mesh.tail, 2), twin, np.tile(mesh.same, 2))
     total, label = fan_labels(sheets)
     below = np.empty(total, dtype=np.intp)
     below[label] = sheets.tail

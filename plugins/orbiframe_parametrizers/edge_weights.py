@@ -24,7 +24,7 @@ def cotangent(mesh: Polyhedron) -> Floats:
     with np.errstate(all="ignore"):
         half = 0.5 * dot / area
     opposite = mesh.next[mesh.next]
-    return half[opposite] + half[opposite[mesh.twin]]
+    return np.asarray(half[opposite] + half[opposite[mesh.twin]])
 
 
 def mean_value(mesh: Polyhedron) -> Floats:
@@ -39,7 +39,7 @@ def mean_value(mesh: Polyhedron) -> Floats:
     with np.errstate(all="ignore"):
         half_tangent = np.where(dot > 0, cross / (product + dot), (product - dot) / cross)
         side = (half_tangent + half_tangent[mesh.next]) / (2 * mesh.edge_lengths)
-    return side + side[mesh.twin]
+    return np.asarray(side + side[mesh.twin])
 
 
 def uniform(mesh: Polyhedron) -> Floats:

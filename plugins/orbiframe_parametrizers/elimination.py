@@ -2,16 +2,55 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import SuperLU, splu
+
+from orbiframe import MapError, Polyhedron
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 _LEAF = 48
 _SMALL = 40_000
+
+
+@dataclass(frozen=True, eq=False)
+class Elimination:
+    """An order of the vertices of a mesh in which matrices on its edges are factored with little fill.
+
+    order: (V,), the vertices one after the other; place: (V,), where each vertex stands in the order.
+    """
+
+    order: Ints
+    place: Ints
+
+    @classmethod
+    def of(cls, mesh: Polyhedron) -> Elimination:
+        """A good order for the edges of a mesh."""
+        once = mesh.representative
+        order = elimination_order(mesh.vertices, mesh.tail[once], mesh.head[once])
+        return cls(order, np.argsort(order))
+
+    def matrix(self, tail: Ints, head: Ints, entries: NDArray[Any], diagonal: NDArray[Any]) -> csc_array[Any]:
+        """The Hermitian matrix in this order with entries (E,) at (tail, head), conjugates at (head, tail)."""
+        i, j = self.place[tail], self.place[head]
+        rows, columns = np.concatenate([i, j, self.place]), np.concatenate([j, i, self.place])
+        data = np.concatenate([entries, np.conj(entries), diagonal])
+        return coo_array((data, (rows, columns)), shape=(len(self.order),) * 2).tocsc()
+
+    def solver(self, tail: Ints, head: Ints, entries: Floats, diagonal: Floats) -> Callable[[Floats], Floats]:
+        """The solution of systems with that matrix for right sides (V,) or (V, k); numbered like the mesh.
+
+        Raises MapError for a singular matrix.
+        """
+        factors = factorised(self.matrix(tail, head, entries, diagonal))
+        return lambda right: np.asarray(factors.solve(right[self.order])[self.place])
 
 
 def elimination_order(positions: Floats, tail: Ints, head: Ints) -> Ints:
@@ -87,6 +126,14 @@ def _upper_half(positions: Floats, part: Ints) -> Ints:
     return right
 
 
-def factorised(matrix: csc_array) -> SuperLU:
-    """The factors of a symmetric (Hermitian) positive definite matrix whose rows are in elimination order already."""
-    return splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+def factorised(matrix: csc_array[Any]) -> SuperLU:
+    """The factors of a symmetric (Hermitian) matrix whose rows are in elimination order already, without pivoting.
+
+    Raises MapError for a singular matrix.
+    """
+    try:
+        return splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    except RuntimeError as error:
+        raise MapError(
+            "the equations of the map are singular; look for degenerate triangles with `orbiframe info`"
+        ) from error

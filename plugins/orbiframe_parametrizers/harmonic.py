@@ -33,8 +33,8 @@ def harmonic(
     polyhedron: a closed connected triangle mesh with chi <= 0, coherently oriented if orientable; geometry: H^2 for
     chi < 0, E^2 for chi = 0, where the lattice is the one of least energy besides. weights: "auto" tries cotangents,
     then cotangents with mean values about the folds ("mixed"), then mean values, then ones, until every triangle is
-    positive. Raises MapError if none gives an
-    embedding, or if a group is named (the group is found from the mesh).
+    positive. Raises MapError if none gives an embedding, if the surface does not live on the geometry, or if a group
+    is named (the group is found from the mesh).
     """
     if group is not None:
         raise MapError("the harmonic map finds its group from the mesh; leave the group out (group.method = 'mesh')")
@@ -55,21 +55,13 @@ def harmonic(
 
 def _layout(mesh: Polyhedron, geometry: Geometry) -> Triangulation:
     surface = surface_type(mesh)
-    if surface.euler_characteristic > 0 or (surface.euler_characteristic < 0) != (geometry.curvature < 0):
+    if surface.euler_characteristic > 0 or np.sign(surface.euler_characteristic) != geometry.curvature:
         raise MapError(f"a surface with chi = {surface.euler_characteristic} does not live on {geometry.name}")
     packing = packed(mesh, geometry.curvature)
     lengths = packing.lengths
     if geometry.curvature == 0:
         lengths = lengths * np.sqrt(4 * np.pi / _flat_area(lengths))
-    return developed(
-        mesh,
-        geometry,
-        lengths,
-        packing.angles,
-        patch_radius=_PATCH_RADIUS,
-        euler_characteristic=surface.euler_characteristic,
-        orientable=surface.orientable,
-    )
+    return developed(mesh, geometry, lengths, packing.angles, surface=surface, patch_radius=_PATCH_RADIUS)
 
 
 def _flat_area(lengths: Floats) -> float:
@@ -84,7 +76,7 @@ def _mapped(layout: Triangulation, name: str, weights: Floats) -> Triangulation 
         return None
     try:
         points = minimised(layout, weights)
-    except (MapError, RuntimeError):
+    except MapError:
         return None
     result = replace(layout, points=points, group="mesh, by circle packing", weights=name)
     if layout.orbifold.geometry.curvature == 0:

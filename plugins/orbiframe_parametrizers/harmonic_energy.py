@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
+from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import LinearOperator, cg
 
 from orbiframe import Geometry, MapError, Triangulation
-from orbiframe_parametrizers.elimination import elimination_order, factorised
+from orbiframe_parametrizers.elimination import Elimination, factorised
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 _STEPS = 40
 _DECREMENT = 1e-10
+_SMALLEST_STEP = 1e-6
 
 
 def minimised(start: Triangulation, weights: Floats) -> Floats:
@@ -26,32 +29,41 @@ def minimised(start: Triangulation, weights: Floats) -> Floats:
     minimum is unique, and an embedding (Colin de Verdiere 1991, Hass and Scott 2015); a linear system in E^2. Stops
     on the Newton decrement. Raises MapError if 40 steps do not suffice.
     """
-    energy = _Energy(start, weights)
+    energy = HarmonicEnergy(start, weights)
     points = start.points
     value = energy.value(points)
     for _ in range(_STEPS):
         step, decrement = energy.newton_step(points)
-        if not decrement > 0:
-            if decrement == 0:
-                return points
-            break  # not convex: negative weights
-        size = 1.0
-        while size > 1e-6:
-            trial = energy.moved(points, size * step)
-            new = energy.value(trial)
-            if new <= value - 1e-4 * size * decrement + 1e-13 * abs(value):
-                break
-            size /= 2
-        else:
+        if decrement == 0:
+            return points
+        further = _search(energy, points, value, step, decrement)
+        if further is None:
             break
-        points, value = trial, new
+        points, value = further
         if decrement < _DECREMENT * abs(value):
             return points
     raise MapError("the harmonic map did not converge; try map.weights = 'mean-value' or 'uniform'")
 
 
+def _search(
+    energy: HarmonicEnergy, points: Floats, value: float, step: Floats, decrement: float
+) -> tuple[Floats, float] | None:
+    """Points and energy after the longest of 1, 1/2, 1/4, ... steps with enough descent (Armijo), or None.
+
+    None too where the energy is not convex, as happens with negative weights.
+    """
+    size = 1.0
+    while decrement > 0 and size > _SMALLEST_STEP:
+        trial = energy.moved(points, size * step)
+        new = energy.value(trial)
+        if new <= value - 1e-4 * size * decrement + 1e-13 * abs(value):
+            return trial, new
+        size /= 2
+    return None
+
+
 @dataclass(frozen=True, eq=False)
-class _Terms:
+class Terms:
     """Gradient of d^2/2 at both ends (E, 2) each, and the three blocks of its Hessian (E, 2, 2)."""
 
     tail: Floats
@@ -61,7 +73,12 @@ class _Terms:
     tail_head: Floats
 
 
-class _Energy:
+class HarmonicEnergy:
+    """The sum of w d^2 / 2 over the edges as a function of the points, with its derivatives.
+
+    start: the mesh and the group; weights: (H,), the same on both halfedges of an edge.
+    """
+
     def __init__(self, start: Triangulation, weights: Floats) -> None:
         mesh, orbifold = start.polyhedron, start.orbifold
         self.geometry: Geometry = orbifold.geometry
@@ -70,21 +87,22 @@ class _Energy:
         self.isometry = orbifold.atlas.isometry[start.transition[edges]]
         self.weights = weights[edges]
         self.count = len(mesh.vertices)
-        self.order = elimination_order(mesh.vertices, self.tail, self.head)
-        self.place = np.empty(self.count, dtype=np.intp)
-        self.place[self.order] = np.arange(self.count)
+        self.elimination = Elimination.of(mesh)
         # Frames that all have one orientation make the Hessian nearly complex linear: see newton_step.
         self.complex = bool(orbifold.orientable and (np.linalg.det(orbifold.atlas.isometry) > 0).all())
 
     def value(self, points: Floats) -> float:
+        """The energy of points (V, 3)."""
         far = self.geometry.act(self.isometry, points[self.head])
         return float(self.weights @ self.geometry.distance(points[self.tail], far) ** 2) / 2
 
     def moved(self, points: Floats, step: Floats) -> Floats:
+        """The points after a step (V, 2), given in the frames at the points, along geodesics."""
         velocity = np.einsum("vij,vj->vi", self.geometry.frame(points), step)
         return self.geometry.exp(points, velocity)
 
-    def terms(self, points: Floats) -> _Terms:
+    def terms(self, points: Floats) -> Terms:
+        """The derivatives of every term, without those of the edges' common sum."""
         geometry = self.geometry
         here, there = points[self.tail], geometry.act(self.isometry, points[self.head])
         frame = geometry.frame(points)
@@ -100,7 +118,7 @@ class _Energy:
         b = (self.weights * second)[:, None, None]
         diagonal = a * (1 - geometry.curvature * versine)[:, None, None] * np.eye(2)
         mixed = -np.einsum("eia,i,eib->eab", at_tail, form, at_head)
-        return _Terms(
+        return Terms(
             a[:, 0] * tail,
             a[:, 0] * head,
             diagonal + b * tail[:, :, None] * tail[:, None, :],
@@ -116,56 +134,53 @@ class _Energy:
         complex structure (nonorientable) the real matrix itself is factored.
         """
         terms = self.terms(points)
-        gradient = np.zeros((self.count, 2))
-        for axis in range(2):
-            gradient[:, axis] = np.bincount(self.tail, weights=terms.tail[:, axis], minlength=self.count)
-            gradient[:, axis] += np.bincount(self.head, weights=terms.head[:, axis], minlength=self.count)
-        right = -gradient[self.order].ravel()
+        right = -self.gradient(terms)[self.elimination.order].ravel()
         hessian = self._real(terms)
-        if self.complex:
-            factor = factorised(self._hermitian(terms))
+        solve = self._hermitian_solver(terms) if self.complex else factorised(hessian).solve
+        shape = (2 * self.count, 2 * self.count)
+        inverse = LinearOperator(shape, matvec=lambda r: solve(r.ravel()), dtype=np.float64)
+        answer, _ = cg(hessian.tocsr(), right, rtol=1e-8, maxiter=100, M=inverse)
+        return answer.reshape(-1, 2)[self.elimination.place], float(right @ answer)
 
-            def precondition(r: Floats) -> Floats:
-                return np.ascontiguousarray(factor.solve(r.view(np.complex128))).view(np.float64)
-        else:
-            factor = factorised(hessian.tocsc())
-            precondition = factor.solve
-        size = 2 * self.count
-        solve = LinearOperator((size, size), matvec=lambda r: precondition(r.ravel()), dtype=np.float64)
-        answer, _ = cg(hessian.tocsr(), right, rtol=1e-8, maxiter=100, M=solve)
-        step = np.empty((self.count, 2))
-        step[self.order] = answer.reshape(-1, 2)
-        return step, float(right @ answer)
-
-    def _blocks(self, terms: _Terms) -> tuple[Ints, Ints, Floats]:
-        i, j = self.place[self.tail], self.place[self.head]
-        turned = np.swapaxes(terms.tail_head, 1, 2)
-        blocks = np.concatenate([terms.tail_tail, terms.head_head, terms.tail_head, turned])
-        return np.concatenate([i, j, i, j]), np.concatenate([i, j, j, i]), blocks
+    def gradient(self, terms: Terms) -> Floats:
+        """The gradient in the frames at the points, (V, 2)."""
+        ends = np.concatenate([self.tail, self.head])
+        parts = np.concatenate([terms.tail, terms.head])
+        return np.stack([np.bincount(ends, weights=part, minlength=self.count) for part in parts.T], axis=1)
 
     def _shift(self, blocks: Floats) -> float:
         """In E^2 translations change nothing: a tiny shift makes the matrix definite and leaves the step as it is."""
         return 1e-10 * float(np.abs(blocks).mean()) if self.geometry.curvature == 0 else 0.0
 
-    def _real(self, terms: _Terms) -> coo_array:
-        i, j, blocks = self._blocks(terms)
+    def _real(self, terms: Terms) -> csc_array[Any]:
+        """The Hessian (2V, 2V) in elimination order."""
+        i, j = self.elimination.place[self.tail], self.elimination.place[self.head]
+        turned = np.swapaxes(terms.tail_head, 1, 2)
+        blocks = np.concatenate([terms.tail_tail, terms.head_head, terms.tail_head, turned])
+        row, column = np.concatenate([i, j, i, j]), np.concatenate([i, j, j, i])
         axis = np.arange(2)
-        rows = (2 * i)[:, None, None] + axis[:, None] + 0 * axis
-        columns = (2 * j)[:, None, None] + 0 * axis[:, None] + axis
-        size = 2 * self.count
-        every = np.arange(size)
-        data = np.append(blocks.ravel(), np.full(size, self._shift(blocks)))
+        rows = np.broadcast_to((2 * row)[:, None, None] + axis[:, None], blocks.shape)
+        columns = np.broadcast_to((2 * column)[:, None, None] + axis, blocks.shape)
+        every = np.arange(2 * self.count)
+        data = np.append(blocks.ravel(), np.full(2 * self.count, self._shift(blocks)))
         place = (np.append(rows.ravel(), every), np.append(columns.ravel(), every))
-        return coo_array((data, place), shape=(size, size))
+        return coo_array((data, place), shape=(2 * self.count, 2 * self.count)).tocsc()
 
-    def _hermitian(self, terms: _Terms) -> coo_array:
-        """Each block [[p, q], [r, s]] read as the complex number ((p + s) + i (r - q)) / 2."""
-        i, j, blocks = self._blocks(terms)
-        data = (blocks[:, 0, 0] + blocks[:, 1, 1]) / 2 + 0.5j * (blocks[:, 1, 0] - blocks[:, 0, 1])
-        every = np.arange(self.count)
-        data = np.append(data, np.full(self.count, self._shift(blocks)))
-        place = (np.append(i, every), np.append(j, every))
-        return coo_array((data, place), shape=(self.count, self.count)).tocsc()
+    def _hermitian_solver(self, terms: Terms) -> Callable[[Floats], Floats]:
+        """Solves with the complex linear part of the Hessian, on vectors (2V,) in elimination order."""
+        ends = np.concatenate([self.tail, self.head])
+        blocks = np.concatenate([terms.tail_tail, terms.head_head])
+        traces = (blocks[:, 0, 0] + blocks[:, 1, 1]) / 2
+        diagonal = np.bincount(ends, weights=traces, minlength=self.count) + self._shift(blocks)
+        matrix = self.elimination.matrix(self.tail, self.head, _complex_part(terms.tail_head), diagonal)
+        factors = factorised(matrix)
+        return lambda r: np.ascontiguousarray(factors.solve(r.view(np.complex128))).view(np.float64)
+
+
+def _complex_part(blocks: Floats) -> NDArray[np.complex128]:
+    """Each block [[p, q], [r, s]] read as the complex number ((p + s) + i (r - q)) / 2, (E,)."""
+    real, imaginary = blocks[:, 0, 0] + blocks[:, 1, 1], blocks[:, 1, 0] - blocks[:, 0, 1]
+    return np.asarray((real + 1j * imaginary) / 2)
 
 
 def _square_distance_derivatives(geometry: Geometry, c: Floats) -> tuple[Floats, Floats]:

@@ -11,6 +11,9 @@ Floats = NDArray[np.float64]
 
 _STEPS = 500
 _LARGEST = 2.0
+_BALANCED = 1e-13
+_SMALLEST_BOOST = 1e-14
+_ACCEPTED = 1e-9
 
 
 def centred_caps(z: NDArray[np.complex128], radii: Floats, weights: Floats) -> Floats:
@@ -20,26 +23,27 @@ def centred_caps(z: NDArray[np.complex128], radii: Floats, weights: Floats) -> F
     A circle is the vector (cos rho, c) / sin rho of its spherical cap (centre c, angular radius rho) in the Lorentz
     space R^(1,3), on which Moebius maps act as Lorentz maps. Newton steps: a small boost b moves a small cap by
     (I - c c^T) b. For points the balanced position exists and is unique up to rotation (Springborn 2005, the minimum
-    of a convex function on H^3); big steps are cut to rapidity 2. Raises MapError without convergence.
+    of a convex function on H^3); big steps are cut to rapidity 2. Raises MapError without
+    convergence, as where z is not finite or all weights are 0.
     """
-    caps = _caps(z, radii)
     weights = weights / weights.sum()
-    scale = np.average(np.abs(z - np.average(z, weights=weights)), weights=weights)
-    caps = _caps((z - np.average(z, weights=weights)) / scale, radii / scale)
+    middle = np.average(z, weights=weights)
+    scale = np.average(np.abs(z - middle), weights=weights)
+    caps = _caps((z - middle) / scale, radii / scale)
     for _ in range(_STEPS):
         centres = caps[:, 1:] / np.linalg.norm(caps[:, 1:], axis=1, keepdims=True)
         mean = weights @ centres
-        if np.linalg.norm(mean) < 1e-13:
+        if not np.linalg.norm(mean) >= _BALANCED:
             break
         spread = np.eye(3) - np.einsum("v,vi,vj->ij", weights, centres, centres)
-        boost = -np.linalg.solve(spread, mean)
+        boost = -np.linalg.lstsq(spread, mean)[0]
         size = float(np.linalg.norm(boost))
-        if size < 1e-14:
+        if size < _SMALLEST_BOOST:
             break
         caps = caps @ _boost(boost / size, min(size, _LARGEST)).T
-    if not np.linalg.norm(mean) < 1e-9:
-        raise MapError("the sphere could not be balanced: the mesh is too crowded for double precision; shorten thin parts")
-    return centres / np.linalg.norm(centres, axis=1, keepdims=True)
+    if not np.linalg.norm(mean) < _ACCEPTED:
+        raise MapError("the sphere could not be balanced: the mesh is too crowded for doubles; shorten thin parts")
+    return np.asarray(centres)
 
 
 def _caps(z: NDArray[np.complex128], radii: Floats) -> Floats:

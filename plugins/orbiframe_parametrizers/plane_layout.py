@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
 
 from orbiframe import Polyhedron
-from orbiframe_parametrizers.elimination import elimination_order, factorised
+from orbiframe_parametrizers.elimination import Elimination
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -53,9 +52,6 @@ def harmonic_layout(mesh: Polyhedron, weights: Floats, pole: int) -> Complexes:
 def _solved(mesh: Polyhedron, weights: Floats, fixed: Ints, position: Complexes, source: Complexes) -> Complexes:
     """The solution of sum over edges of w (z_i - z_j) = source_i at the free vertices, z = position at the fixed."""
     count = len(position)
-    order = elimination_order(mesh.vertices, mesh.tail, mesh.head)
-    place = np.empty(count, dtype=np.intp)
-    place[order] = np.arange(count)
     held = np.zeros(count, dtype=np.bool_)
     held[fixed] = True
     i, j = mesh.tail, mesh.head
@@ -64,11 +60,7 @@ def _solved(mesh: Polyhedron, weights: Floats, fixed: Ints, position: Complexes,
     np.add.at(right, i[known], weights[known] * position[j[known]])
     right[fixed] = position[fixed]
     diagonal = np.where(held, 1.0, np.bincount(i, weights=weights, minlength=count))
-    inner = ~held[i] & ~held[j]
-    every = np.arange(count)
-    rows, columns = place[np.append(i[inner], every)], place[np.append(j[inner], every)]
-    data = np.append(-weights[inner], diagonal)
-    factor = factorised(coo_array((data, (rows, columns)), shape=(count, count)).tocsc())
-    solution = np.empty_like(right)
-    solution[order] = factor.solve(right[order].real) + 1j * factor.solve(right[order].imag)
-    return solution
+    inner = np.flatnonzero(mesh.representative & ~held[i] & ~held[j])
+    solve = Elimination.of(mesh).solver(i[inner], j[inner], -weights[inner], diagonal)
+    solution = solve(np.stack([right.real, right.imag], axis=1))
+    return np.asarray(solution[:, 0] + 1j * solution[:, 1])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -34,18 +33,21 @@ def sphere(
     One face is taken away and the rest is packed with circles in the plane (Koebe, Andreev, Thurston: possible for
     every triangulation), projected to the sphere and centred by a Moebius map. weights: "cotangent" and "mean-value"
     replace the circle centres by a harmonic map to the plane with one pole, which follows the metric of the mesh;
-    "auto" takes the one of the three that has no fold and the smallest median angle distortion. Raises MapError if
-    none is an embedding.
+    "auto" takes the one of the three that has no fold and the smallest median angle distortion. The faces of an
+    orientable surface must be oriented alike. Raises MapError if they are not, if the surface does not live on the
+    geometry, if a group is named, or if no map is an embedding.
     """
     surface = surface_type(polyhedron)
     if surface.euler_characteristic <= 0 or geometry.curvature != 1:
         raise MapError(f"a surface with chi = {surface.euler_characteristic} does not live on {geometry.name}")
+    if surface.orientable and polyhedron.same.any():
+        raise MapError("the faces of the mesh are not oriented alike; orient them before they are mapped to the sphere")
     if group is not None:
         raise MapError("the map to the sphere takes no group; leave it out (group.method = 'mesh')")
     target = _Sphere(polyhedron, geometry) if surface.orientable else _ProjectivePlane(polyhedron, geometry)
     names = ["cotangent", "mean-value", "packing"] if weights == "auto" else [weights]
-    made = [result for name in names for result in target.attempts(name)]
-    embedded = [result for result in made if result.not_positive == 0]
+    made = [target.mapped(name) for name in names]
+    embedded = [result for result in made if result is not None and result.not_positive == 0]
     if not embedded:
         raise MapError(
             "the map to the sphere has folded triangles: parts of the mesh are too long and thin for double precision; "
@@ -59,13 +61,13 @@ class _Sphere:
     mesh: Polyhedron
     geometry: Geometry
 
-    def attempts(self, name: str) -> Iterator[Triangulation]:
+    def mapped(self, name: str) -> Triangulation | None:
         points = _spherical(self.mesh, name)
-        if points is not None:
-            atlas = _one_patch(self.geometry, np.eye(3)[None])
-            patch, transition = (np.zeros(n, dtype=np.intp) for n in (len(points), len(self.mesh.tail)))
-            orbifold = Orbifold(atlas, 2, True, 4 * np.pi)
-            yield Triangulation(orbifold, self.mesh, patch, points, transition, "trivial", name)
+        if points is None:
+            return None
+        orbifold = Orbifold(_one_patch(self.geometry, np.eye(3)[None]), 2, True, 4 * np.pi)
+        patch, transition = (np.zeros(n, dtype=np.intp) for n in (len(points), len(self.mesh.tail)))
+        return Triangulation(orbifold, self.mesh, patch, points, transition, "trivial", name)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,25 +75,25 @@ class _ProjectivePlane:
     mesh: Polyhedron
     geometry: Geometry
 
-    def attempts(self, name: str) -> Iterator[Triangulation]:
+    def mapped(self, name: str) -> Triangulation | None:
         cover = double_cover(self.mesh)
         points = _spherical(cover.polyhedron, name)
         if points is None:
-            return
+            return None
         # The centring is unique, so that the sheets are antipodal up to rounding and the choice of the face.
         points = self.geometry.project(points - points[cover.mate])
         atlas = _one_patch(self.geometry, np.stack([np.eye(3), -np.eye(3)]))
         patch = np.zeros(len(self.mesh.vertices), dtype=np.intp)
         orbifold = Orbifold(atlas, 1, False, 2 * np.pi)
         transition = _sheet_changes(cover)
-        yield Triangulation(orbifold, self.mesh, patch, points[cover.chosen], transition, "antipodal map", name)
+        return Triangulation(orbifold, self.mesh, patch, points[cover.chosen], transition, "antipodal map", name)
 
 
 def _sheet_changes(cover: DoubleCover) -> Ints:
     """1 on the halfedges (H,) whose ends lie over different sheets of chosen points, else 0."""
-    return (cover.tail != cover.chosen[cover.below[cover.tail]]).astype(np.intp) ^ (
-        cover.head != cover.chosen[cover.below[cover.head]]
-    ).astype(np.intp)
+    is_chosen = np.zeros(len(cover.below), dtype=np.bool_)
+    is_chosen[cover.chosen] = True
+    return np.asarray(is_chosen[cover.tail] != is_chosen[cover.head], dtype=np.intp)
 
 
 def _one_patch(geometry: Geometry, isometry: Floats) -> Atlas:
@@ -102,21 +104,29 @@ def _one_patch(geometry: Geometry, isometry: Floats) -> Atlas:
 
 
 def _spherical(mesh: Polyhedron, name: str) -> Floats | None:
-    """The vertices on the unit sphere, (V, 3), or None where the weights are not finite."""
-    normals = _normals(mesh)
-    size = np.linalg.norm(normals, axis=1)
-    hole = int(np.argmax(size))
+    """The vertices on the unit sphere, (V, 3), or None where degenerate or crowded triangles leave no way."""
+    size = np.linalg.norm(_normals(mesh), axis=1)
+    areas = np.zeros(len(mesh.vertices))
+    np.add.at(areas, mesh.tail, np.repeat(size, 3))
+    try:
+        z, radii = _planar(mesh, name, int(np.argmax(size)))
+        if not (np.isfinite(z).all() and areas.any()):
+            return None
+        points = centred_caps(z, radii, areas)
+    except MapError:
+        return None
+    return points if name == "packing" else _unfolded(mesh, points)
+
+
+def _planar(mesh: Polyhedron, name: str, hole: int) -> tuple[NDArray[np.complex128], Floats]:
+    """Circles in the plane: centres (V,), nan where the weights are not finite, and radii (V,), 0 for points."""
     if name == "packing":
         packing = packed(mesh, 0, without_face=hole)
-        z, radii = packed_layout(mesh, packing.angles, hole), packing.radii
-    else:
-        weights = WEIGHTS[name](mesh)
-        if not np.isfinite(weights).all():
-            return None
-        z, radii = harmonic_layout(mesh, weights, hole), np.zeros(len(mesh.vertices))
-    areas = np.bincount(mesh.tail, weights=np.repeat(size, 3), minlength=len(z))
-    points = centred_caps(z, radii, areas)
-    return points if name == "packing" else _unfolded(mesh, points)
+        return packed_layout(mesh, packing.angles, hole), packing.radii
+    weights, none = WEIGHTS[name](mesh), np.zeros(len(mesh.vertices))
+    if not np.isfinite(weights).all():
+        return np.full(len(none), np.nan, dtype=np.complex128), none
+    return harmonic_layout(mesh, weights, hole), none
 
 
 def _unfolded(mesh: Polyhedron, points: Floats) -> Floats:
