@@ -133,7 +133,7 @@ def _of_size(
     basis = stages("basis", config.component("basis", registry), triangulation.orbifold, triangulation)
     fitter = config.component("fitter", registry)()
     coefficients = stages("fit", fitter.fit, basis, samples)
-    recipe = config.basis.name, dict(config.basis.options)
+    recipe = config.basis.name, _basis_options(config, registry)
     surface = OrbifoldSurface(triangulation, refinement, basis, coefficients, np.zeros(3), 1.0, *recipe)
     return surface, samples, stages("error", _deviation, surface, samples)
 
@@ -155,10 +155,15 @@ def _normalised(polyhedron: Polyhedron) -> tuple[Polyhedron, NDArray[np.float64]
     return polyhedron.with_vertices(centred / scale), origin, scale
 
 
+def _basis_options(config: Config, registry: Registry) -> dict[str, Any]:
+    """All options of the basis, those given and the defaults of the others."""
+    options = options_of(registry.load("basis", config.basis.name))
+    return {option.name: config.basis.options.get(option.name, option.default) for option in options}
+
+
 def _size(config: Config, registry: Registry) -> int:
     """The number of functions that the basis will have, as far as its options tell."""
-    options = {option.name: option.default for option in options_of(registry.load("basis", config.basis.name))}
-    return int(config.basis.options.get("size", options.get("size", 1000)))
+    return int(_basis_options(config, registry).get("size", 1000))
 
 
 def _longest_edge(triangles: Polyhedron, size: int) -> float:
