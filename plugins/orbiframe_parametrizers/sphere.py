@@ -19,6 +19,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 _SMOOTHINGS = 30
+_EQUAL = 1e-9
 
 
 def sphere(
@@ -109,13 +110,21 @@ def _spherical(mesh: Polyhedron, name: str) -> Floats | None:
     areas = np.zeros(len(mesh.vertices))
     np.add.at(areas, mesh.tail, np.repeat(size, 3))
     try:
-        z, radii = _planar(mesh, name, int(np.argmax(size)))
+        z, radii = _planar(mesh, name, _hole(mesh, size))
         if not (np.isfinite(z).all() and areas.any()):
             return None
         points = centred_caps(z, radii, areas)
     except MapError:
         return None
     return points if name == "packing" else _unfolded(mesh, points)
+
+
+def _hole(mesh: Polyhedron, size: Floats) -> int:
+    """The largest face; of equals the one whose centre comes first, so that the order of the faces does not matter."""
+    largest = np.flatnonzero(size >= (1 - _EQUAL) * size.max())
+    centre = mesh.vertices[mesh.triangles[largest]].mean(axis=1)
+    cells = np.round(centre / (_EQUAL * (mesh.diagonal or 1.0)))
+    return int(largest[np.lexsort(cells.T[::-1])[0]])
 
 
 def _planar(mesh: Polyhedron, name: str, hole: int) -> tuple[NDArray[np.complex128], Floats]:
