@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import stat
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.errors import FormatError, PluginError
+from orbiframe.options import checked_options
 from orbiframe.plugin import Component
 from orbiframe.polyhedron import Polyhedron
 from orbiframe.suggestion import did_you_mean
@@ -33,22 +35,40 @@ class Components(Protocol):
         """What the component names, imported now."""
 
 
-def read(path: Path, registry: Components, *, format: str | None = None, size_limit: int = SIZE_LIMIT) -> Polyhedron:
+def read(
+    path: Path,
+    registry: Components,
+    *,
+    format: str | None = None,
+    options: Mapping[str, Any] | None = None,
+    degenerate: bool = False,
+    size_limit: int = SIZE_LIMIT,
+) -> Polyhedron:
     """The polyhedron of a file, by the reader of its suffix or by the one that `format` names.
+
+    options: those of the reader; degenerate: let faces of fewer than three different vertices pass, to be described or
+    repaired.
 
     The file must be a regular one of 1 to size_limit bytes. Raises FormatError, naming the file, for anything that is
     wrong with it or with the polyhedron in it: a coordinate that is not finite, an index out of range, a face of fewer
     than three different vertices, no face at all. Whatever a reader raises, the end of the process included, becomes a
-    FormatError. Raises UsageError for an unknown format, PluginError where the reader cannot be imported.
+    FormatError. Raises UsageError for an unknown format or option, PluginError where the reader cannot be imported.
     """
     path = Path(path)
     require_readable(path, size_limit)
-    reader = registry.load("reader", component_name(path, registry, "reader", format))
-    return require_sound(_guarded(path, "reading", reader, path), path)
+    reader = _component(path, registry, "reader", format, options)
+    return require_sound(_guarded(path, "reading", reader, path), path, degenerate=degenerate)
 
 
-def write(path: Path, polyhedron: Polyhedron, registry: Components, *, format: str | None = None) -> None:
-    """Write a polyhedron, by the writer of the file's suffix or by the one that `format` names.
+def write(
+    path: Path,
+    polyhedron: Polyhedron,
+    registry: Components,
+    *,
+    format: str | None = None,
+    options: Mapping[str, Any] | None = None,
+) -> None:
+    """Write a polyhedron, by the writer of the file's suffix or by the one that `format` names, with its options.
 
     The file appears whole or not at all: it is made in a folder beside its place and then moved. Raises FormatError,
     naming the file, where the polyhedron or the place is unfit or the writer fails; UsageError and PluginError as in
@@ -59,7 +79,7 @@ def write(path: Path, polyhedron: Polyhedron, registry: Components, *, format: s
     target = Path(os.path.realpath(path)) if path.is_symlink() else path
     require_writable(target)
     require_sound(polyhedron, path)
-    writer = registry.load("writer", component_name(path, registry, "writer", format))
+    writer = _component(path, registry, "writer", format, options)
     with _folder_beside(target) as folder:
         made = Path(folder) / path.name
         _guarded(path, "writing", writer, made, polyhedron)
@@ -84,6 +104,13 @@ def component_name(path: Path, registry: Components, kind: str, format: str | No
     if len(names) > 1:
         raise PluginError(f"{path}: the {kind}s {', '.join(names)} claim '{suffix}'; name one of them as the format")
     return names[0]
+
+
+def _component(
+    path: Path, registry: Components, kind: str, format: str | None, options: Mapping[str, Any] | None
+) -> Callable[..., object]:
+    target = registry.load(kind, component_name(path, registry, kind, format))
+    return partial(target, **checked_options(target, options, kind, {})) if options else target
 
 
 def _unknown(path: Path, suffix: str, kind: str, registry: Components) -> str:
@@ -171,11 +198,11 @@ def _move(made: Path, target: Path) -> None:
 # ---- after every reader, before every writer ----------------------------------------------------------------------
 
 
-def require_sound(polyhedron: object, path: Path) -> Polyhedron:
+def require_sound(polyhedron: object, path: Path, *, degenerate: bool = False) -> Polyhedron:
     """The polyhedron itself. Raises FormatError, naming the file, unless later steps can rely on it.
 
     It has a face; coordinates, normals and colours are finite and as many as they must be; every corner is a vertex;
-    every face has three different vertices at least.
+    every face has three different vertices at least, unless degenerate faces are allowed.
     """
     if not isinstance(polyhedron, Polyhedron):
         raise FormatError(f"{path}: a Polyhedron is required, but there is a {type(polyhedron).__name__}")
@@ -183,6 +210,8 @@ def require_sound(polyhedron: object, path: Path) -> Polyhedron:
         raise FormatError(f"{path}: there are {len(polyhedron.vertices)} vertices but no face; a surface is required")
     _require_tables(polyhedron, path)
     _require_corners(polyhedron, path)
+    if not degenerate:
+        _require_distinct(polyhedron, path)
     return polyhedron
 
 
@@ -215,12 +244,15 @@ def _require_corners(polyhedron: Polyhedron, path: Path) -> None:
     if len(bad):
         face = polyhedron.face[bad[0]]
         raise FormatError(f"{path}: face {face} names vertex {tail[bad[0]]}, but the vertices are 0 to {count - 1}")
+
+
+def _require_distinct(polyhedron: Polyhedron, path: Path) -> None:
     few = np.flatnonzero(distinct_vertices(polyhedron) < 3)
     if len(few):
         corners = " ".join(map(str, polyhedron.face_corners(int(few[0])).tolist()))
         raise FormatError(
             f"{path}: face {few[0]} has the vertices {corners}, but at least three different ones are required "
-            f"({len(few)} such faces); drop them"
+            f"({len(few)} such faces); --drop-degenerate drops them"
         )
 
 
