@@ -70,15 +70,27 @@ def bisected(polyhedron: Polyhedron, longest: float) -> Bisection:
 def edge_length_for(polyhedron: Polyhedron, vertices: int) -> float:
     """The longest edge that gives about so many vertices, spread evenly over the surface.
 
-    Needle-like triangles need more: the length is doubled until no more than four times as many are added.
+    Needle-like triangles need more: the length is doubled until about ten times as many are enough.
     """
-    area = float(np.linalg.norm(vector_areas(polyhedron), axis=1).sum())
-    lengths = polyhedron.edge_lengths[polyhedron.representative]
+    areas = np.linalg.norm(vector_areas(polyhedron), axis=1)
+    sides = polyhedron.edge_lengths.reshape(-1, 3).max(axis=1)
     # Edges end up between half the longest and the longest: a vertex holds about 0.42 of its square.
-    longest = max(float(np.sqrt(area / (0.42 * vertices))), 1e-9 * float(lengths.max()))
-    while float(np.maximum(np.ceil(lengths / longest) - 1, 0).sum()) > 4 * vertices:
+    longest = max(float(np.sqrt(areas.sum() / (0.42 * vertices))), 1e-9 * float(sides.max()))
+    while _triangles_made(sides, areas, longest) > 20 * vertices + polyhedron.face_count:
         longest *= 2
     return longest
+
+
+def _triangles_made(sides: Floats, areas: Floats, longest: float) -> float:
+    """About how many triangles the bisection makes of triangles with these longest sides and areas, (F,) each.
+
+    A needle becomes three triangles of half its longest side; once they are round, each becomes four.
+    """
+    halvings = np.log2(np.maximum(sides / longest, 1))
+    heights = np.maximum(2 * areas / longest, np.finfo(float).tiny)
+    with np.errstate(over="ignore"):
+        slender = np.minimum(np.log2(np.maximum(sides**2 / (longest * heights), 1)), halvings)
+    return float((3**slender * 4 ** (halvings - slender)).sum())
 
 
 class _State:
