@@ -18,6 +18,8 @@ from orbiframe.errors import (
 from orbiframe.fitter import Fitter as Fitter
 from orbiframe.geometry import Geometry as Geometry
 from orbiframe.group import Group as Group
+from orbiframe.marked_group import MarkedGroup as MarkedGroup
+from orbiframe.marking import Marking as Marking, marking_along as marking_along
 from orbiframe.motion import Motion as Motion
 from orbiframe.orbifold import Orbifold as Orbifold
 from orbiframe.pipeline import fit as fit
@@ -36,6 +38,7 @@ from orbiframe.spacing import (
     edge_graph as edge_graph,
     farthest_points as farthest_points,
 )
+from orbiframe.spin import Spin as Spin
 from orbiframe.surface import OrbifoldSurface as OrbifoldSurface
 from orbiframe.surface_file import load_surface as load_surface, save_surface as save_surface
 from orbiframe.topology import (

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from orbiframe.errors import GeometryError
 from orbiframe.geometry import Geometry
+from orbiframe.spin import Spin
 from orbiframe.word import Word
 
 Floats = NDArray[np.float64]
@@ -63,8 +64,19 @@ class FundamentalPolygon:
     @cached_property
     def interior_angles(self) -> Floats:
         """Interior angle at every vertex in (0, 2 pi), (n,)."""
-        angles = self.geometry.angle(self.vertices, self.heads, np.roll(self.vertices, 1, axis=0))
-        return np.asarray(np.mod(angles, 2 * np.pi))
+        after, before = self.directions
+        return np.mod(before - after, 2 * np.pi).astype(np.float64)
+
+    @cached_property
+    def directions(self) -> tuple[NDArray[np.longdouble], NDArray[np.longdouble]]:
+        """At every vertex the directions of the next and of the previous one in `geometry.frame`, (n,) each.
+
+        Found with the vertex moved to the origin, so that they keep their digits where the polygon is large.
+        """
+        corner = Spin.translation(self.geometry.curvature, self.vertices)
+        turned = np.arange(len(self.vertices))
+        after, before = ((corner.inverse @ corner[np.roll(turned, shift)]).direction for shift in (-1, 1))
+        return after, before
 
     @cached_property
     def sides(self) -> Floats:

@@ -12,6 +12,7 @@ from orbiframe.registry import resolve
 # Positional arguments that the pipeline hands over; keyword-only arguments come from the configuration.
 POSITIONAL = {
     "geometry": 0,
+    "marker": 1,
     "group": 2,
     "parametrizer": 3,
     "basis": 2,
