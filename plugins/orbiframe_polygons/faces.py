@@ -19,6 +19,8 @@ EXACT = float(2**53)
 
 def ragged(first: Ints, sizes: Ints) -> Ints:
     """The positions first[i], first[i] + 1, …, first[i] + sizes[i] - 1 of all i, one after the other."""
+    if len(sizes) and (sizes == sizes[0]).all():
+        return (first[:, None] + np.arange(sizes[0])).ravel()
     offsets = np.cumsum(sizes) - sizes
     return np.repeat(first - offsets, sizes) + np.arange(int(sizes.sum()))
 
@@ -32,10 +34,13 @@ def whole(values: Floats | Ints, place: Place) -> Ints:
     """Numbers as integers. Raises FormatError with the place of the first that is none."""
     if values.dtype.kind in "iu":
         return values.astype(np.intp)
-    bad = np.flatnonzero((values != np.floor(values)) | (np.abs(values) > EXACT))
-    if len(bad):
-        raise FormatError(f"{place(int(bad[0]))}: found {values[bad[0]]:g}, but a whole number is required")
-    return values.astype(np.intp)
+    with np.errstate(invalid="ignore"):
+        integers = values.astype(np.intp)
+    wrong = (integers != values) | (np.abs(values) > EXACT)
+    if wrong.any():
+        bad = int(wrong.argmax())
+        raise FormatError(f"{place(bad)}: found {values[bad]:g}, but a whole number is required")
+    return integers
 
 
 def require_sizes(sizes: Ints, place: Place) -> None:
@@ -57,8 +62,8 @@ def corners(values: Floats | Ints, sizes: Ints, count: int, place: Place, *, nou
         return int(np.searchsorted(np.cumsum(sizes), corner, side="right"))
 
     tail = whole(values, lambda corner: place(face(corner)))
-    bad = np.flatnonzero((tail < 0) | (tail >= count))
-    if len(bad):
+    if tail.min(initial=0) < 0 or tail.max(initial=-1) >= count:
+        bad = np.flatnonzero((tail < 0) | (tail >= count))
         wrong = face(int(bad[0]))
         raise FormatError(
             f"{place(wrong)}: face {wrong} names {noun} {tail[bad[0]]} (the first is 0), but the file has only {count}"
@@ -68,8 +73,8 @@ def corners(values: Floats | Ints, sizes: Ints, count: int, place: Place, *, nou
 
 def require_finite(values: NDArray[np.floating], place: Place) -> None:
     """Raise FormatError with the row unless a table (n, k) holds finite numbers only."""
-    bad = np.flatnonzero(~np.isfinite(values).all(axis=1))
-    if len(bad):
+    if not np.isfinite(values).all():
+        bad = np.flatnonzero(~np.isfinite(values).all(axis=1))
         numbers = ", ".join(f"{x:g}" for x in values[bad[0]].tolist())
         raise FormatError(f"{place(int(bad[0]))}: found {numbers} in row {bad[0]}, but only finite numbers are allowed")
 

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
 from orbiframe import Polyhedron
-from orbiframe_polygons.lines import face_lines, joined, rows, save
+from orbiframe_polygons.lines import columns_of, faces_text, save, table_text
 
 
 def write(path: Path, polyhedron: Polyhedron) -> None:
@@ -17,6 +15,5 @@ def write(path: Path, polyhedron: Polyhedron) -> None:
     """
     header = f"{'C' * (polyhedron.colors is not None)}{'N' * (polyhedron.normals is not None)}OFF"
     counts = f"{len(polyhedron.vertices)} {polyhedron.face_count} {polyhedron.edge_count}"
-    columns = [a for a in (polyhedron.vertices, polyhedron.normals, polyhedron.colors) if a is not None]
-    faces = joined(face_lines(polyhedron), polyhedron.face_colors)
-    save(path, [header, counts, *rows(np.hstack(columns)), *faces])
+    vertices = table_text(columns_of(polyhedron.vertices, polyhedron.normals, polyhedron.colors))
+    save(path, [header, counts], vertices, faces_text(polyhedron, columns_of(polyhedron.face_colors)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 
 from orbiframe import Polyhedron
 from orbiframe_polygons.faces import offsets_of
-from orbiframe_polygons.lines import face_lines, save
+from orbiframe_polygons.lines import faces_text, save, table_text
 
 Array = NDArray[Any]
 NAMES = {"u1": "uchar", "u4": "uint", "i4": "int", "i8": "int", "f8": "double"}
@@ -39,7 +38,7 @@ def write(path: Path, polyhedron: Polyhedron, *, ascii: bool = False, big_endian
     count = "u1" if polyhedron.face_sizes.max(initial=0) < 256 else "u4"
     header = _header(order, polyhedron, vertex, face, count)
     if ascii:
-        save(path, [*header, *_lines(vertex), *_face_lines(polyhedron, face)])
+        save(path, header, table_text([c.values for c in vertex]), faces_text(polyhedron, [c.values for c in face]))
         return
     body = _records(vertex, order).tobytes() + _face_bytes(polyhedron, face, order, count)
     path.write_bytes("\n".join([*header, ""]).encode("ascii") + body)
@@ -73,15 +72,6 @@ def _header(order: str, polyhedron: Polyhedron, vertex: list[Column], face: list
         *(f"property {NAMES[c.type]} {c.name}" for c in face),
         "end_header",
     ]
-
-
-def _lines(columns: list[Column]) -> Iterator[str]:
-    return map(" ".join, zip(*[map(repr, c.values.tolist()) for c in columns], strict=True))
-
-
-def _face_lines(polyhedron: Polyhedron, colours: list[Column]) -> Iterator[str]:
-    faces = face_lines(polyhedron)
-    return map(" ".join, zip(faces, _lines(colours), strict=True)) if colours else faces
 
 
 def _records(columns: list[Column], order: str) -> Array:

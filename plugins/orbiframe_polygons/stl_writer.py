@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import FormatError, Polyhedron
-from orbiframe_polygons.lines import rows, save
+from orbiframe_polygons.lines import columns_of, save, shaped_text
 from orbiframe_polygons.loss import tell_loss
 from orbiframe_polygons.stl_reader import RECORD
 
 Floats = NDArray[np.float64]
+
+FACET = [
+    *("facet normal ", " ", " "),
+    *("\nouter loop\nvertex ", " ", " "),
+    *("\nvertex ", " ", " ") * 2,
+    "\nendloop\nendfacet\n",
+]
+END = [b"endsolid orbiframe\n"]
 
 
 def write(path: Path, polyhedron: Polyhedron, *, ascii: bool = False) -> None:
@@ -28,7 +35,7 @@ def write(path: Path, polyhedron: Polyhedron, *, ascii: bool = False) -> None:
     tell_loss(path, "normals of vertices", polyhedron.normals is not None)
     corners = polyhedron.vertices[polyhedron.triangles]
     if ascii:
-        save(path, ["solid orbiframe", *_facets(corners), "endsolid orbiframe"])
+        save(path, ["solid orbiframe"], shaped_text(columns_of(_normals(corners), *corners.swapaxes(0, 1)), FACET), END)
         return
     _require_single(path, polyhedron)
     records = np.zeros(len(corners), dtype=RECORD)
@@ -66,8 +73,3 @@ def _normals(corners: Floats) -> Floats:
     length = np.linalg.norm(normal, axis=1, keepdims=True)
     unit: Floats = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
     return unit
-
-
-def _facets(corners: Floats) -> Iterator[str]:
-    for normal, a, b, c in zip(rows(_normals(corners)), *(rows(corners[:, k]) for k in range(3)), strict=True):
-        yield f"facet normal {normal}\nouter loop\nvertex {a}\nvertex {b}\nvertex {c}\nendloop\nendfacet"

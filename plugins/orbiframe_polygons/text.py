@@ -11,15 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import FormatError
-from orbiframe_polygons.floats import parsed
+from orbiframe_polygons.floats import LARGE, NUMBER, parsed
 
 Bytes = NDArray[np.uint8]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
-NUMBER = re.compile(rb"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 NEWLINE, BLANK, CONTINUED = 10, 32, 11
+FEW = 100
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,11 +79,14 @@ class Text:
 
     def numbers(self) -> Floats:
         """All words of all lines as finite numbers, in one array. Raises FormatError with the line of a bad word."""
-        values = parsed(self.data[int(self.begin[0]) : int(self.end[-1])].tobytes()) if len(self) else np.empty(0)
-        if values is None or len(values) != self.words.sum():
+        if not len(self):
+            return np.empty(0)
+        values = parsed(self.data[int(self.begin[0]) : int(self.end[-1])], int(self.words.sum()))
+        if values is None:
             self._blame()
-        bad = np.flatnonzero(~np.isfinite(values))
-        if len(bad):
+        finite = np.isfinite(values)
+        if not finite.all():
+            bad = np.flatnonzero(~finite)
             row = int(np.searchsorted(self.first, bad[0], side="right")) - 1
             word = self.line(row).split()[int(bad[0] - self.first[row])]
             self.refuse(row, f"found {shown(word)}, but only finite numbers are allowed")
@@ -94,6 +97,9 @@ class Text:
         raise FormatError(f"{self.path}, line {self.number[row]}: {complaint}")
 
     def _blame(self) -> NoReturn:
+        if len(self) > FEW:
+            for half in (self.lines(0, len(self) // 2), self.lines(len(self) // 2, len(self))):
+                half.numbers()
         for row in range(len(self)):
             for word in self.line(row).split():
                 if not NUMBER.fullmatch(word):
@@ -129,19 +135,33 @@ def plain(path: Path, data: bytes) -> bytes:
 def table(path: Path, data: bytes, *, line: int = 1) -> Text:
     """The lines of a text that are not blank; line: the number of the first line."""
     codes = np.frombuffer(data, dtype=np.uint8)
+    begin, end, number, words = (_found_compiled if len(data) >= LARGE else _found)(codes)
+    return Text(path, codes, begin, end, number + line, words)
+
+
+def _found(codes: Bytes) -> tuple[Ints, Ints, Ints, Ints]:
+    """The lines that are not blank: first word, end, number of line ends before, and how many words."""
     starts = codes > BLANK
     starts[1:] &= codes[:-1] <= BLANK
     newlines = np.flatnonzero(codes == NEWLINE)
     begin = np.concatenate([[0], newlines + 1])
     word = np.flatnonzero(starts)
     words = np.diff(np.searchsorted(word, begin), append=len(word))
-    number = np.arange(line, line + len(begin))
-    if CONTINUED in data:
-        number += np.searchsorted(np.flatnonzero(codes == CONTINUED), begin)
+    number = np.arange(len(begin)) + np.searchsorted(np.flatnonzero(codes == CONTINUED), begin)
     filled = words > 0
     first = (np.cumsum(words) - words)[filled]
     end = np.append(newlines, len(codes))[filled]
-    return Text(path, codes, word[first], end, number[filled], words[filled])
+    return word[first], end, number[filled], words[filled]
+
+
+def _found_compiled(codes: Bytes) -> tuple[Ints, Ints, Ints, Ints]:
+    from orbiframe_polygons.compiled_numbers import find_lines
+
+    room = np.count_nonzero(codes == NEWLINE) + 1
+    found = tuple(np.empty(room, dtype=np.intp) for _ in range(4))
+    rows = find_lines(codes, *found)
+    begin, end, number, words = (column[:rows] for column in found)
+    return begin, end, number, words
 
 
 def shown(word: bytes) -> str:
