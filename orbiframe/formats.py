@@ -230,8 +230,8 @@ def _require_table(
         return
     if table.ndim != 2 or len(table) != rows or table.shape[1] not in widths:
         raise FormatError(f"{path}: the {noun} table is {table.shape}; {rows} rows of {widths[-1]} are required")
-    bad = np.flatnonzero(~np.isfinite(table).all(axis=1))
-    if len(bad):
+    if not np.isfinite(table).all():
+        bad = np.flatnonzero(~np.isfinite(table).all(axis=1))
         numbers = ", ".join(f"{x:g}" for x in table[bad[0]].tolist())
         raise FormatError(f"{path}: {noun} {bad[0]} is ({numbers}), but only finite numbers are allowed")
 
@@ -240,10 +240,10 @@ def _require_corners(polyhedron: Polyhedron, path: Path) -> None:
     tail, offsets, count = polyhedron.tail, polyhedron.offsets, len(polyhedron.vertices)
     if offsets[0] != 0 or offsets[-1] != len(tail) or (polyhedron.face_sizes < 0).any():
         raise FormatError(f"{path}: the faces and their {len(tail)} corners do not fit together")
-    bad = np.flatnonzero((tail < 0) | (tail >= count))
-    if len(bad):
-        face = polyhedron.face[bad[0]]
-        raise FormatError(f"{path}: face {face} names vertex {tail[bad[0]]}, but the vertices are 0 to {count - 1}")
+    if tail.min(initial=0) < 0 or tail.max(initial=-1) >= count:
+        bad = int(((tail < 0) | (tail >= count)).argmax())
+        face = polyhedron.face[bad]
+        raise FormatError(f"{path}: face {face} names vertex {tail[bad]}, but the vertices are 0 to {count - 1}")
 
 
 def _require_distinct(polyhedron: Polyhedron, path: Path) -> None:
@@ -258,6 +258,9 @@ def _require_distinct(polyhedron: Polyhedron, path: Path) -> None:
 
 def distinct_vertices(polyhedron: Polyhedron) -> NDArray[np.intp]:
     """How many different vertices each face has, (F,)."""
+    if polyhedron.is_triangular:
+        a, b, c = polyhedron.triangles.T
+        return 1 + (a != b) + ((c != a) & (c != b)).astype(np.intp)
     count = np.zeros(polyhedron.face_count, dtype=np.intp)
     for size in np.unique(polyhedron.face_sizes[polyhedron.face_sizes > 0]).tolist():
         faces = np.flatnonzero(polyhedron.face_sizes == size)

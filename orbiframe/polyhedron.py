@@ -16,6 +16,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
+# From so many halfedges on, a compiled loop gains more time than the import of the compiler takes.
+LARGE = 2**20
+
 
 @dataclass(frozen=True, eq=False)
 class Polyhedron:
@@ -163,6 +166,13 @@ def _require_corners(vertex_count: int, offsets: Ints, tail: Ints) -> None:
 
 
 def _twins_by_ends(vertex_count: int, offsets: Ints, tail: Ints) -> tuple[Ints, Bools]:
+    twin = np.full(len(tail), -1, dtype=np.intp)
+    same = np.zeros(len(tail), dtype=np.bool_)
+    if LARGE <= len(tail) < 2**31:
+        from orbiframe.twins import find_twins
+
+        find_twins(vertex_count, offsets, tail, twin, same)
+        return twin, same
     following = np.arange(1, len(tail) + 1)
     sizes = np.diff(offsets)
     following[offsets[1:][sizes > 0] - 1] = offsets[:-1][sizes > 0]
@@ -173,8 +183,6 @@ def _twins_by_ends(vertex_count: int, offsets: Ints, tail: Ints) -> tuple[Ints, 
     first = np.flatnonzero(np.diff(key[order], prepend=-1))
     pairs = first[np.diff(first, append=len(key)) == 2]
     a, b = order[pairs], order[pairs + 1]
-    twin = np.full(len(tail), -1, dtype=np.intp)
-    same = np.zeros(len(tail), dtype=np.bool_)
     twin[a], twin[b] = b, a
     same[a] = same[b] = tail[a] == tail[b]
     return twin, same
