@@ -89,7 +89,7 @@ class HarmonicEnergy:
         self.count = len(mesh.vertices)
         self.elimination = Elimination.of(mesh)
         # Frames that all have one orientation make the Hessian nearly complex linear: see newton_step.
-        self.complex = bool(orbifold.orientable and (np.linalg.det(orbifold.atlas.isometry) > 0).all())
+        self.complex = bool(orbifold.orientable and (self.geometry.parity(orbifold.atlas.isometry) > 0).all())
 
     def value(self, points: Floats) -> float:
         """The energy of points (V, 3)."""
@@ -135,7 +135,7 @@ class HarmonicEnergy:
         """
         terms = self.terms(points)
         right = -self.gradient(terms)[self.elimination.order].ravel()
-        hessian = self._real(terms)
+        hessian = self.hessian(terms)
         solve = self._hermitian_solver(terms) if self.complex else factorised(hessian).solve
         shape = (2 * self.count, 2 * self.count)
         inverse = LinearOperator(shape, matvec=lambda r: solve(r.ravel()), dtype=np.float64)
@@ -152,7 +152,7 @@ class HarmonicEnergy:
         """In E^2 translations change nothing: a tiny shift makes the matrix definite and leaves the step as it is."""
         return 1e-10 * float(np.abs(blocks).mean()) if self.geometry.curvature == 0 else 0.0
 
-    def _real(self, terms: Terms) -> csc_array[Any]:
+    def hessian(self, terms: Terms) -> csc_array[Any]:
         """The Hessian (2V, 2V) in elimination order."""
         i, j = self.elimination.place[self.tail], self.elimination.place[self.head]
         turned = np.swapaxes(terms.tail_head, 1, 2)

@@ -31,22 +31,45 @@ def packed_layout(mesh: Polyhedron, angles: Floats, hole: int) -> Complexes:
 def harmonic_layout(mesh: Polyhedron, weights: Floats, pole: int) -> Complexes:
     """The harmonic map (V,) to the plane with a simple pole in one face, conformal as the weights (H,) see it.
 
-    The sources at the corners of the face are the derivatives of the hat functions: a discrete derivative of the delta
-    function (Haker et al., Conformal surface parameterization for texture mapping, 2000), so that the face gets its
-    shape from the mesh. One vertex is fixed; scale and rotation are arbitrary.
+    The sources are a discrete derivative of the delta function (Haker et al., Conformal surface parameterization for
+    texture mapping, 2000). One vertex is fixed; scale and rotation are arbitrary.
     """
-    corners = mesh.triangles[pole]
-    a, b, c = mesh.vertices[corners]
-    along = (b - a) / np.linalg.norm(b - a)
-    x, y = float(along @ (c - a)), float(np.linalg.norm((c - a) - along * (along @ (c - a))))
-    length = float(np.linalg.norm(b - a))
-    position = np.zeros(len(mesh.vertices), dtype=np.complex128)
-    source = np.zeros_like(position)
-    # Gradients of the hat functions in the plane of the face, with corners 0, (length, 0), (x, y).
-    gradient = np.array([[-1 / length, (x - length) / (length * y)], [1 / length, -x / (length * y)], [0, 1 / y]])
-    source[corners] = gradient[:, 0] - 1j * gradient[:, 1]
-    far = int(np.argmax(np.linalg.norm(mesh.vertices - a, axis=1)))
-    return _solved(mesh, weights, np.array([far]), position, source)
+    vertices, places = _unfolded_round(mesh, pole)
+    source = np.zeros(len(mesh.vertices), dtype=np.complex128)
+    np.add.at(source, vertices, _dipole(places))
+    far = int(np.argmax(np.linalg.norm(mesh.vertices - mesh.vertices[vertices[0]], axis=1)))
+    return _solved(mesh, weights, np.array([far]), np.zeros_like(source), source)
+
+
+def _dipole(places: Complexes) -> Complexes:
+    """Least charges (6,) that have the potential of 1 / z up to the third order, seen from far away.
+
+    Charges at the corners of a triangle alone would add a quadrupole, an error as large as the triangle.
+    """
+    z = places / np.abs(places).max()
+    moments = np.stack([np.ones_like(z), z, z.conj(), z**2, z.conj() ** 2])
+    return np.asarray(np.linalg.lstsq(moments, np.array([0, 1, 0, 0, 0], dtype=np.complex128))[0])
+
+
+def _unfolded_round(mesh: Polyhedron, face: int) -> tuple[Ints, Complexes]:
+    """The corners of a face and of its three neighbours (6,), and their places in its plane about its centre."""
+    sides = 3 * face + np.arange(3)
+    corners, p = mesh.tail[sides], mesh.vertices
+    apexes = mesh.tail[mesh.next[mesh.next[mesh.twin[sides]]]]
+    along = p[mesh.head[sides]] - p[corners]
+    inner, inner_height = _in_frame(p[np.roll(corners, 1)] - p[corners], along)
+    outer, outer_height = _in_frame(p[apexes] - p[corners], along)
+    plane = np.array([0, np.linalg.norm(along[0]), inner[0] + 1j * inner_height[0]], dtype=np.complex128)
+    direction = np.roll(plane, -1) - plane
+    beside = plane + direction / np.abs(direction) * (outer - 1j * outer_height)
+    return np.concatenate([corners, apexes]), np.concatenate([plane, beside]) - plane.mean()
+
+
+def _in_frame(vectors: Floats, axis: Floats) -> tuple[Floats, Floats]:
+    """The part of vectors (n, 3) along axes (n, 3) and the length of what is left."""
+    unit = axis / np.linalg.norm(axis, axis=1, keepdims=True)
+    along = np.einsum("ni,ni->n", vectors, unit)
+    return along, np.linalg.norm(vectors - along[:, None] * unit, axis=1)
 
 
 def _solved(mesh: Polyhedron, weights: Floats, fixed: Ints, position: Complexes, source: Complexes) -> Complexes:
