@@ -10,11 +10,16 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from orbiframe.clusters import clusters, unit_scale
 from orbiframe.errors import TopologyError
 from orbiframe.polyhedron import Polyhedron
+from orbiframe.seams import Seams, seams
 
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
+
+_SPLIT = "--split-nonmanifold-vertices"
+_SINGULAR = {"vertices": "vertex", "faces": "face", "edges": "edge", "junctions": "junction", "seams": "a seam"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,18 +48,22 @@ class SurfaceType:
 
 @dataclass(frozen=True, slots=True)
 class Defect:
-    """One kind of flaw of a polyhedron: how often, where first, and whether it stops the map to X/H."""
+    """One kind of flaw of a polyhedron: how often, where first, and whether it stops the map to X/H.
+
+    remedy: the option of `orbiframe convert` and `orbiframe fit` that helps, empty where none does.
+    """
 
     kind: str
     count: int
     where: str
     fatal: bool
+    remedy: str = ""
 
     def __str__(self) -> str:
         """Count and kind, such as "4 open edges" or "1 duplicate face"."""
         kind = self.kind
         if self.count == 1:
-            for many, one in (("vertices", "vertex"), ("faces", "face"), ("edges", "edge")):
+            for many, one in _SINGULAR.items():
                 kind = kind.replace(many, one)
         return f"{self.count} {kind}"
 
@@ -69,24 +78,26 @@ def surface_type(polyhedron: Polyhedron) -> SurfaceType:
     chi = used - polyhedron.edge_count + polyhedron.face_count
     closed = polyhedron.face_count > 0 and bool((polyhedron.face_sizes > 0).all() and (polyhedron.twin >= 0).all())
     orientable = sheets == 2 * components
-    is_surface = closed and components == 1 and not len(_pinched_vertices(polyhedron))
+    is_surface = closed and components == 1 and bool((fans_at_vertices(polyhedron) <= 1).all())
     genus = (2 - chi) // (2 if orientable else 1) if is_surface else None
     return SurfaceType(chi, orientable, closed, components, genus)
 
 
 def defects(polyhedron: Polyhedron) -> list[Defect]:
     """Everything that keeps a polyhedron from being one closed connected surface, or that a user should know of."""
+    joints = seams(polyhedron)
     found = [
         _not_finite(polyhedron),
         _few_corners(polyhedron),
         _repeated_vertices(polyhedron),
         _duplicate_faces(polyhedron),
-        *_broken_edges(polyhedron),
+        *_broken_edges(polyhedron, joints),
+        *_missing_joints(joints),
         _several_fans(polyhedron),
-        _several_components(polyhedron),
+        _several_components(polyhedron, joints),
         _orientation(polyhedron),
         _unused(polyhedron),
-        _coincident(polyhedron),
+        _coincident(polyhedron, joints),
         _zero_area(polyhedron),
     ]
     return [defect for defect in found if defect is not None]
@@ -99,11 +110,16 @@ def require_closed_surface(polyhedron: Polyhedron) -> SurfaceType:
     fatal = [defect for defect in defects(polyhedron) if defect.fatal]
     if fatal:
         reasons = "; ".join(f"{defect} ({defect.where})" for defect in fatal)
-        raise TopologyError(
-            f"the mesh is not one closed connected surface: {reasons}; "
-            "`orbiframe info` lists all defects, mend them in a mesh editor and try again"
-        )
+        raise TopologyError(f"the mesh is not one closed connected surface: {reasons}; {_advice(fatal)}")
     return surface_type(polyhedron)
+
+
+def _advice(fatal: list[Defect]) -> str:
+    """What to do next, in words."""
+    helpful = " ".join(dict.fromkeys(defect.remedy for defect in fatal if defect.remedy))
+    if not helpful:
+        return "`orbiframe info` lists all defects, mend them in a mesh editor and try again"
+    return f"try again with {helpful}, or mend it in a mesh editor; `orbiframe info` lists all defects"
 
 
 def oriented(polyhedron: Polyhedron) -> Polyhedron:
@@ -154,6 +170,21 @@ def _used_vertices(polyhedron: Polyhedron) -> Bools:
     return np.bincount(polyhedron.tail, minlength=len(polyhedron.vertices)) > 0
 
 
+def face_components(polyhedron: Polyhedron) -> tuple[int, Ints]:
+    """The number of components (faces joined by edges), and the component of every face, (F,).
+
+    Components are numbered from the one with the most faces down; of two alike, the one with the first face leads.
+    """
+    components, _, label = _face_sheets(polyhedron)
+    count = polyhedron.face_count
+    _, first, merged, size = np.unique(
+        np.minimum(label[:count], label[count:]), return_index=True, return_inverse=True, return_counts=True
+    )
+    rank = np.empty(components, dtype=np.intp)
+    rank[np.lexsort((first, -size))] = np.arange(components)
+    return components, rank[merged.ravel()]
+
+
 def _face_sheets(polyhedron: Polyhedron) -> tuple[int, int, Ints]:
     """Components of the faces, and of the two-sheeted orientation cover (nodes f and F + f), with its labels."""
     count = polyhedron.face_count
@@ -183,12 +214,12 @@ def fan_labels(polyhedron: Polyhedron) -> tuple[int, Ints]:
     return int(count), label.astype(np.intp)
 
 
-def _pinched_vertices(polyhedron: Polyhedron) -> Ints:
+def fans_at_vertices(polyhedron: Polyhedron) -> Ints:
+    """The number of fans at every vertex, (V,); 1 at the vertices of a surface, 0 where there is no face."""
     count, label = fan_labels(polyhedron)
     owner = np.empty(count, dtype=np.intp)
     owner[label] = polyhedron.tail
-    fans = np.bincount(owner, minlength=len(polyhedron.vertices))
-    return np.flatnonzero(fans > 1)
+    return np.bincount(owner, minlength=len(polyhedron.vertices))
 
 
 def _listed(items: Iterable[object], limit: int = 5) -> str:
@@ -205,17 +236,25 @@ def _not_finite(polyhedron: Polyhedron) -> Defect | None:
 
 def _few_corners(polyhedron: Polyhedron) -> Defect | None:
     bad = np.flatnonzero(polyhedron.face_sizes < 3)
-    return Defect("faces of fewer than 3 corners", len(bad), f"faces {_listed(bad)}", True) if len(bad) else None
+    where = f"faces {_listed(bad)}"
+    return Defect("faces of fewer than 3 corners", len(bad), where, True, "--drop-degenerate") if len(bad) else None
+
+
+def faces_with_repeated_vertices(polyhedron: Polyhedron) -> Ints:
+    """The faces that meet one of their vertices twice or more often."""
+    order = np.lexsort((polyhedron.tail, polyhedron.face))
+    face, tail = polyhedron.face[order], polyhedron.tail[order]
+    return np.unique(face[1:][(face[1:] == face[:-1]) & (tail[1:] == tail[:-1])])
 
 
 def _repeated_vertices(polyhedron: Polyhedron) -> Defect | None:
-    order = np.lexsort((polyhedron.tail, polyhedron.face))
-    face, tail = polyhedron.face[order], polyhedron.tail[order]
-    bad = np.unique(face[1:][(face[1:] == face[:-1]) & (tail[1:] == tail[:-1])])
-    return Defect("faces with a repeated vertex", len(bad), f"faces {_listed(bad)}", True) if len(bad) else None
+    bad = faces_with_repeated_vertices(polyhedron)
+    where = f"faces {_listed(bad)}"
+    return Defect("faces with a repeated vertex", len(bad), where, True, "--drop-degenerate") if len(bad) else None
 
 
-def _duplicate_faces(polyhedron: Polyhedron) -> Defect | None:
+def duplicate_faces(polyhedron: Polyhedron) -> list[tuple[int, int]]:
+    """Pairs of faces with the same vertices in any order and direction: each face with the one before that is alike."""
     pairs: list[tuple[int, int]] = []
     order = np.lexsort((polyhedron.tail, polyhedron.face))
     tail = polyhedron.tail[order]
@@ -227,13 +266,19 @@ def _duplicate_faces(polyhedron: Polyhedron) -> Defect | None:
         by_row = np.lexsort(rows.T[::-1])
         equal = (rows[by_row][1:] == rows[by_row][:-1]).all(axis=1)
         pairs += [(int(faces[a]), int(faces[b])) for a, b in zip(by_row[:-1][equal], by_row[1:][equal], strict=True)]
-    where = "faces " + _listed(f"{min(p)} and {max(p)}" for p in sorted(pairs))
+    return sorted(pairs)
+
+
+def _duplicate_faces(polyhedron: Polyhedron) -> Defect | None:
+    pairs = duplicate_faces(polyhedron)
     # Two triangles on the same corners may close up to a sphere: only the edges tell whether that is a flaw.
     closed = bool((polyhedron.twin >= 0).all())
-    return Defect("duplicate faces", len(pairs), where, not closed) if pairs else None
+    where = "faces " + _listed(f"{a} and {b}" for a, b in pairs)
+    remedy = "" if closed else "--drop-degenerate"
+    return Defect("duplicate faces", len(pairs), where, not closed, remedy) if pairs else None
 
 
-def _broken_edges(polyhedron: Polyhedron) -> list[Defect]:
+def _broken_edges(polyhedron: Polyhedron, joints: Seams) -> list[Defect]:
     alone = np.flatnonzero(polyhedron.twin < 0)
     if not len(alone):
         return []
@@ -249,14 +294,31 @@ def _broken_edges(polyhedron: Polyhedron) -> list[Defect]:
         i, j = ends[open_edges[0]]
         face = polyhedron.face[alone[first[open_edges[0]]]]
         where = f"{loops}; first edge {i}-{j} of face {face}"
-        found.append(Defect("open edges", len(open_edges), where, True))
+        found.append(Defect("open edges", len(open_edges), where, True, _weld(joints)))
     crowded = np.flatnonzero(count > 2)
     if len(crowded):
-        i, j = ends[crowded[0]]
-        faces = polyhedron.face[alone[inverse.ravel() == crowded[0]]]
-        where = f"edge {i}-{j} lies in faces {_listed(faces)}"
-        found.append(Defect("non-manifold edges", len(crowded), where, True))
+        shown = [(ends[k], polyhedron.face[alone[inverse.ravel() == k]]) for k in crowded[:3]]
+        where = "; ".join(f"edge {i}-{j} lies in faces {_listed(faces)}" for (i, j), faces in shown)
+        more = "; …" if len(crowded) > len(shown) else ""
+        found.append(Defect("non-manifold edges", len(crowded), where + more, True, _SPLIT))
     return found
+
+
+def _weld(found: Seams) -> str:
+    return f"--weld {found.tolerance:g}" if found.closed else ""
+
+
+def _missing_joints(found: Seams) -> list[Defect]:
+    """Open edges that lie upon one another: ends that coincide, and ends of one inside of another."""
+    missing = []
+    if found.closed:
+        where = f"vertices {_listed(found.vertices)}; a weld closes {found.closed} open edges"
+        missing.append(Defect("vertices on unwelded seams", len(found.vertices), where, False, _weld(found)))
+    if len(found.junctions):
+        where = _listed(f"vertex {v} inside edge {i}-{j}" for v, i, j in found.junctions.tolist())
+        some = "" if found.complete else "; not all open edges were searched"
+        missing.append(Defect("T-junctions", len(found.junctions), where + some, False))
+    return missing
 
 
 def _boundary_loops(ends: Ints) -> str:
@@ -269,17 +331,19 @@ def _boundary_loops(ends: Ints) -> str:
 
 
 def _several_fans(polyhedron: Polyhedron) -> Defect | None:
-    bad = _pinched_vertices(polyhedron)
-    return Defect("vertices of several fans", len(bad), f"vertices {_listed(bad)}", True) if len(bad) else None
+    fans = fans_at_vertices(polyhedron)
+    bad = np.flatnonzero(fans > 1)
+    where = "vertices " + _listed(f"{v} ({fans[v]} fans)" for v in bad)
+    return Defect("vertices of several fans", len(bad), where, True, _SPLIT) if len(bad) else None
 
 
-def _several_components(polyhedron: Polyhedron) -> Defect | None:
-    components, _, label = _face_sheets(polyhedron)
+def _several_components(polyhedron: Polyhedron, found: Seams) -> Defect | None:
+    components, label = face_components(polyhedron)
     if components <= 1:
         return None
-    merged = np.minimum(label[: polyhedron.face_count], label[polyhedron.face_count :])
-    sizes = np.sort(np.unique(merged, return_counts=True)[1])[::-1]
-    return Defect("components", components, f"of {_listed(sizes)} faces", True)
+    # Parts that a weld joins are no components of their own.
+    remedy = "" if found.closed else "--component largest"
+    return Defect("components", components, f"of {_listed(np.bincount(label))} faces", True, remedy)
 
 
 def _orientation(polyhedron: Polyhedron) -> Defect | None:
@@ -288,29 +352,35 @@ def _orientation(polyhedron: Polyhedron) -> Defect | None:
     if sheets != 2 * components or not len(turned):
         return None
     where = f"first edge {polyhedron.tail[turned[0]]}-{polyhedron.head[turned[0]]}; orientation is mended when mapped"
-    return Defect("inconsistently oriented edges", len(turned), where, False)
+    return Defect("inconsistently oriented edges", len(turned), where, False, "--orient")
 
 
 def _unused(polyhedron: Polyhedron) -> Defect | None:
     bad = np.flatnonzero(~_used_vertices(polyhedron))
-    return Defect("vertices in no face", len(bad), f"vertices {_listed(bad)}", False) if len(bad) else None
+    where = f"vertices {_listed(bad)}"
+    return Defect("vertices in no face", len(bad), where, False, "--drop-degenerate") if len(bad) else None
 
 
-def _coincident(polyhedron: Polyhedron) -> Defect | None:
-    used = np.flatnonzero(_used_vertices(polyhedron))
-    _, inverse, count = np.unique(polyhedron.vertices[used], axis=0, return_inverse=True, return_counts=True)
-    bad = used[count[inverse.ravel()] > 1]
+def _coincident(polyhedron: Polyhedron, found: Seams) -> Defect | None:
+    """Different vertices in one place, but for those that a weld of open edges joins."""
+    used = np.setdiff1d(np.flatnonzero(_used_vertices(polyhedron)), found.vertices if found.closed else [])
+    label = clusters(polyhedron.vertices[used])
+    bad = used[np.bincount(label)[label] > 1]
     return Defect("coincident vertices", len(bad), f"vertices {_listed(bad)}", False) if len(bad) else None
 
 
+def faces_without_area(polyhedron: Polyhedron) -> Ints:
+    """The faces whose area is nothing beside the square of the bounding box's diagonal; none where that is infinite."""
+    if not np.isfinite(polyhedron.vertices).all():
+        return np.empty(0, dtype=np.intp)
+    unit = polyhedron.with_vertices(unit_scale(polyhedron.vertices)[0])
+    return np.flatnonzero(np.linalg.norm(vector_areas(unit), axis=1) <= 1e-14 * unit.diagonal**2)
+
+
 def _zero_area(polyhedron: Polyhedron) -> Defect | None:
-    largest = np.abs(polyhedron.vertices).max(initial=0.0)
-    if not np.isfinite(largest):
-        return None
-    # By a power of two, so that no digit changes: the squares of very large and very small numbers are none.
-    unit = polyhedron.with_vertices(np.ldexp(polyhedron.vertices, -np.frexp(largest)[1]))
-    bad = np.flatnonzero(np.linalg.norm(vector_areas(unit), axis=1) <= 1e-14 * unit.diagonal**2)
-    return Defect("faces without area", len(bad), f"faces {_listed(bad)}", False) if len(bad) else None
+    bad = faces_without_area(polyhedron)
+    where = f"faces {_listed(bad)}"
+    return Defect("faces without area", len(bad), where, False, "--drop-degenerate") if len(bad) else None
 
 
 def vector_areas(polyhedron: Polyhedron) -> NDArray[np.float64]:

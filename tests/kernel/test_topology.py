@@ -200,10 +200,10 @@ def test_a_vertex_where_two_surfaces_touch_is_named() -> None:
     faces = face_lists(reference_polyhedra()["tetrahedron"])
     other = [[{0: 3, 1: 4, 2: 5, 3: 6}[i] for i in face] for face in faces]
     touching = flat(faces + other)
-    assert found(touching)["vertices of several fans"] == (1, "vertices 3", True)
+    assert found(touching)["vertices of several fans"] == (1, "vertices 3 (2 fans)", True)
     assert found(touching)["components"] == (2, "of 4, 4 faces", True)
     assert surface_type(touching).genus is None
-    with pytest.raises(TopologyError, match=r"1 vertex of several fans \(vertices 3\)"):
+    with pytest.raises(TopologyError, match=r"1 vertex of several fans \(vertices 3 \(2 fans\)\)"):
         require_closed_surface(touching)
 
 
@@ -215,7 +215,7 @@ def test_a_sphere_with_two_points_made_one_is_pinched_though_connected() -> None
     faces = [[keep if i == gone else i for i in face] for face in faces]
     pinched = without_unused_vertices(Polyhedron.from_faces(mesh.vertices, faces))
     assert {kind: value[:2] for kind, value in found(pinched).items()} == {
-        "vertices of several fans": (1, f"vertices {keep}")
+        "vertices of several fans": (1, f"vertices {keep} (2 fans)")
     }
     assert surface_type(pinched) == SurfaceType(1, True, True, 1, None)
 
