@@ -82,9 +82,9 @@ class Config:
         tables = _parsed(text, path)
         places = _places(text, path)
         for override in overrides:
-            table, key, value = _parsed_override(override)
+            table, key, value = parsed_override(override)
             place = places[f"{table}.{key}"] = f"--set {override}"
-            _require_table(table, TABLES, {table: place})
+            require_table(table, TABLES, {table: place})
             tables[table] = {**_table(tables, table, places), key: value}
         return cls.from_tables(tables, places=places, folder=Path() if path is None else path.parent)
 
@@ -95,7 +95,7 @@ class Config:
         """The configuration that a TOML file with these tables says; see `load`."""
         places = dict(places or {})
         for table in tables:
-            _require_table(table, (*TABLES, "plugins"), places)
+            require_table(table, (*TABLES, "plugins"), places)
         files = checked_value(tuple[str, ...], tables.get("plugins", []), "plugins", places)
         steps = {table: _step(table, _table(tables, table, places), places) for table in STEPS}
         output = Output(**checked_options(Output, _table(tables, "output", places), "output", places))
@@ -195,7 +195,8 @@ def _places(text: str, path: Path | None) -> dict[str, str]:
     return places
 
 
-def _parsed_override(text: str) -> tuple[str, str, Any]:
+def parsed_override(text: str) -> tuple[str, str, Any]:
+    """Table, key and value of "TABLE.KEY=VALUE"; see `Config.load`. Raises ConfigError for any other text."""
     name, equals, value = text.partition("=")
     table, dot, key = name.strip().partition(".")
     if not (equals and dot and table and key):
@@ -210,7 +211,8 @@ def _toml_value(text: str) -> Any:
         return text
 
 
-def _require_table(name: str, known: Sequence[str], places: Mapping[str, str]) -> None:
+def require_table(name: str, known: Sequence[str], places: Mapping[str, str]) -> None:
+    """Raise ConfigError unless a table of this name is known."""
     if name not in known:
         place = place_of(name, places)
         raise ConfigError(f"{place}no table named '{name}'; allowed: {', '.join(known)}.{did_you_mean(name, known)}")
