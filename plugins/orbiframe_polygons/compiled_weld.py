@@ -2,56 +2,75 @@
 
 from __future__ import annotations
 
-import numpy as np
 from numba import njit, uint64
+from numpy import full, int32
 
 START = 2**12
+# Most corners come again soon: a small table of late points stays in the fastest memory.
+LATE = 2**13
 
 
 @njit(inline="always")
-def _slot(bits, point, mask):  # type: ignore[no-untyped-def]
-    """Where the search for a point starts."""
-    code = uint64(0)
-    for k in range(3):
-        code = (code ^ uint64(bits[point, k])) * uint64(0x9E3779B97F4A7C15)
-        code ^= code >> uint64(32)
-    return code & mask
+def _code(x, y, z):  # type: ignore[no-untyped-def]
+    odd, half = uint64(0x9E3779B97F4A7C15), uint64(32)
+    code = uint64(x) * odd
+    code = (code ^ (code >> half) ^ uint64(y)) * odd
+    code = (code ^ (code >> half) ^ uint64(z)) * odd
+    return code ^ (code >> half)
+
+
+@njit(inline="always")
+def _find(table, code, unique, x, y, z):  # type: ignore[no-untyped-def]
+    """The slot of a point, or the free one where it belongs."""
+    mask = uint64(len(table) - 1)
+    slot = code & mask
+    while table[slot] >= 0 and not _is_at(unique, table[slot], x, y, z):
+        slot = (slot + uint64(1)) & mask
+    return slot
+
+
+@njit(inline="always")
+def _is_at(unique, number, x, y, z):  # type: ignore[no-untyped-def]
+    return unique[number, 0] == x and unique[number, 1] == y and unique[number, 2] == z
 
 
 @njit(cache=True)
-def number_points(bits, first, place):  # type: ignore[no-untyped-def]
-    """Number the different points by their bits (n, 3), in the order in which they first occur. Returns how many.
+def number_points(bits, minus_zero, unique, place):  # type: ignore[no-untyped-def]
+    """Number the different points by their bits, (n, m, 3), in the order in which they first occur.
 
-    first: of each different point the first that is equal to it; place: the number of each point.
+    unique: the bits of the different points, without minus zeros; place: the number of each point, (n · m,). Returns
+    how many different points there are.
     """
-    table = np.full(START, -1, dtype=np.int32)
-    mask, count = uint64(START - 1), 0
-    for point in range(len(bits)):
-        if 2 * count >= len(table):
-            table, mask = _grown(bits, first, count, 4 * len(table))
-        slot = _slot(bits, point, mask)
-        while table[slot] >= 0 and not _equal(bits, first[table[slot]], point):
-            slot = (slot + uint64(1)) & mask
-        if table[slot] < 0:
-            table[slot] = count
-            first[count] = point
-            count += 1
-        place[point] = table[slot]
+    zero = minus_zero ^ minus_zero
+    table, late, count, index = full(START, -1, int32), full(LATE, -1, int32), 0, 0
+    for row in range(bits.shape[0]):
+        for corner in range(bits.shape[1]):
+            x, y, z = bits[row, corner, 0], bits[row, corner, 1], bits[row, corner, 2]
+            x = zero if x == minus_zero else x
+            y = zero if y == minus_zero else y
+            z = zero if z == minus_zero else z
+            code = _code(x, y, z)
+            number = late[code & uint64(LATE - 1)]
+            if number < 0 or not _is_at(unique, number, x, y, z):
+                if 2 * count >= len(table):
+                    table = _grown(unique, count, 4 * len(table))
+                slot = _find(table, code, unique, x, y, z)
+                if table[slot] < 0:
+                    table[slot] = count
+                    unique[count, 0], unique[count, 1], unique[count, 2] = x, y, z
+                    count += 1
+                number = table[slot]
+                late[code & uint64(LATE - 1)] = number
+            place[index] = number
+            index += 1
     return count
 
 
-@njit(inline="always")
-def _equal(bits, a, b):  # type: ignore[no-untyped-def]
-    return bits[a, 0] == bits[b, 0] and bits[a, 1] == bits[b, 1] and bits[a, 2] == bits[b, 2]
-
-
 @njit(cache=True)
-def _grown(bits, first, count, size):  # type: ignore[no-untyped-def]
+def _grown(unique, count, size):  # type: ignore[no-untyped-def]
     """A larger table of the points known so far."""
-    table, mask = np.full(size, -1, dtype=np.int32), uint64(size - 1)
+    table = full(size, -1, int32)
     for number in range(count):
-        slot = _slot(bits, first[number], mask)
-        while table[slot] >= 0:
-            slot = (slot + uint64(1)) & mask
-        table[slot] = number
-    return table, mask
+        x, y, z = unique[number, 0], unique[number, 1], unique[number, 2]
+        table[_find(table, _code(x, y, z), unique, x, y, z)] = number
+    return table

@@ -146,9 +146,10 @@ def _from_zero(faces: Text, values: Floats, seen: Ints) -> Ints:
         return int(np.searchsorted(np.cumsum(faces.words), corner, side="right"))
 
     index = whole(values, lambda corner: f"{faces.path}, line {faces.number[row(corner)]}")
-    zero = np.flatnonzero(index == 0)
-    if len(zero):
-        faces.refuse(row(int(zero[0])), "found the index 0, but OBJ counts from 1")
+    if not index.all():
+        faces.refuse(row(int((index == 0).argmax())), "found the index 0, but OBJ counts from 1")
+    if index.min(initial=1) > 0:
+        return index - 1
     return np.where(index < 0, np.repeat(seen, faces.words) + index, index - 1)
 
 

@@ -34,7 +34,7 @@ def read(path: Path) -> Polyhedron:
     corners = _binary(path, data) if _is_binary(data) else _ascii(path, data)
     if not len(corners):
         raise FormatError(f"{path}: the file holds no triangles")
-    vertices, tail = welded(corners.reshape(-1, 3))
+    vertices, tail = welded(corners)
     return Polyhedron.from_faces(vertices, tail.reshape(-1, 3))
 
 

@@ -20,6 +20,7 @@ FACET = [
     *("\nvertex ", " ", " ") * 2,
     "\nendloop\nendfacet\n",
 ]
+BLOCK = 2**14
 END = [b"endsolid orbiframe\n"]
 
 
@@ -33,15 +34,13 @@ def write(path: Path, polyhedron: Polyhedron, *, ascii: bool = False) -> None:
     _require_triangles(path, polyhedron)
     tell_loss(path, "colours", polyhedron.colors is not None or polyhedron.face_colors is not None)
     tell_loss(path, "normals of vertices", polyhedron.normals is not None)
-    corners = polyhedron.vertices[polyhedron.triangles]
     if ascii:
+        corners = polyhedron.vertices[polyhedron.triangles]
         save(path, ["solid orbiframe"], shaped_text(columns_of(_normals(corners), *corners.swapaxes(0, 1)), FACET), END)
         return
-    _require_single(path, polyhedron)
-    records = np.zeros(len(corners), dtype=RECORD)
-    records["normal"], records["corners"] = _normals(corners), corners
-    count = len(corners).to_bytes(4, "little")
-    path.write_bytes(b"orbiframe: binary STL".ljust(80) + count + records.tobytes())
+    blocks = [_records(path, polyhedron, first).tobytes() for first in range(0, polyhedron.face_count, BLOCK)]
+    count = polyhedron.face_count.to_bytes(4, "little")
+    path.write_bytes(b"".join([b"orbiframe: binary STL".ljust(80), count, *blocks]))
 
 
 def _require_triangles(path: Path, polyhedron: Polyhedron) -> None:
@@ -53,15 +52,25 @@ def _require_triangles(path: Path, polyhedron: Polyhedron) -> None:
         )
 
 
-def _require_single(path: Path, polyhedron: Polyhedron) -> None:
+def _records(path: Path, polyhedron: Polyhedron, first: int) -> NDArray[np.void]:
+    """The records of a block of triangles, from the first on."""
+    corners = polyhedron.vertices[polyhedron.triangles[first : first + BLOCK]]
+    records = np.zeros(len(corners), dtype=RECORD)
     with np.errstate(over="ignore"):
-        corners = polyhedron.vertices.astype(np.float32)[polyhedron.triangles]
-    equal = (corners == np.roll(corners, 1, axis=1)).all(axis=2).any(axis=1)
+        single = corners.astype(np.float32)
+    _require_single(path, single, first)
+    records["normal"], records["corners"] = _normals(corners), single
+    return records
+
+
+def _require_single(path: Path, corners: NDArray[np.float32], first: int) -> None:
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    equal = (a == b).all(axis=1) | (b == c).all(axis=1) | (c == a).all(axis=1)
     bad = np.flatnonzero(equal | ~np.isfinite(corners).all(axis=(1, 2)))
     if len(bad):
         raise FormatError(
-            f"{path}: the corners of face {bad[0]} are equal or infinite in float32, all that binary STL holds; "
-            "scale the polyhedron, or write OFF, OBJ or PLY"
+            f"{path}: the corners of face {first + bad[0]} are equal or infinite in float32, which is all that binary "
+            "STL holds; scale the polyhedron, or write OFF, OBJ or PLY"
         )
 
 

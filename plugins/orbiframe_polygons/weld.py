@@ -11,22 +11,22 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Points = NDArray[np.floating[Any]]
 
-# From so many points on, compiled loops gain more time than the import of the compiler takes.
-LARGE = 2**19
+# From so many faces on, compiled loops gain more time than the import of the compiler takes.
+LARGE = 2**17
 
 
-def welded(points: Points) -> tuple[Floats, Ints]:
-    """The different points, (V, 3), in the order in which they first occur, and which of them each point is, (n,).
+def welded(corners: Points) -> tuple[Floats, Ints]:
+    """The different corners of faces (n, m, 3) as (V, 3), in the order in which they first occur, and their numbers.
 
-    points: finite, (n, 3). Points are equal if all coordinates are, to the last bit; only 0 and -0 are the same.
+    corners: finite; the second result is (n · m,). Points are equal if all coordinates are, to the last bit; only 0
+    and -0 are the same.
     """
-    cleared = np.ascontiguousarray(points) + points.dtype.type(0)
-    first, place = (_hashed if len(points) >= LARGE else _sorted)(cleared)
-    return cleared[first].astype(np.float64), place
+    unique, place = (_hashed if len(corners) >= LARGE else _sorted)(corners)
+    return unique.astype(np.float64), place
 
 
-def _sorted(points: Points) -> tuple[Ints, Ints]:
-    """Of each different point the first that is equal to it, and which of them each point is."""
+def _sorted(corners: Points) -> tuple[Points, Ints]:
+    points = corners.reshape(-1, 3) + corners.dtype.type(0)
     order = np.lexsort(points.T)
     ordered = points[order]
     fresh = np.ones(len(points), dtype=np.bool_)
@@ -37,12 +37,15 @@ def _sorted(points: Points) -> tuple[Ints, Ints]:
     first = order[fresh]
     rank = np.empty(len(first), dtype=np.intp)
     rank[np.argsort(first)] = np.arange(len(first))
-    return np.sort(first), rank[group]
+    return points[np.sort(first)], rank[group]
 
 
-def _hashed(points: Points) -> tuple[Ints, Ints]:
+def _hashed(corners: Points) -> tuple[Points, Ints]:
     from orbiframe_polygons.compiled_weld import number_points
 
-    first, place = np.empty(len(points), dtype=np.intp), np.empty(len(points), dtype=np.intp)
-    count = number_points(points.view(f"u{points.dtype.itemsize}"), first, place)
-    return first[:count], place
+    count = corners.size // 3
+    unique, place = np.empty((count, 3), dtype=corners.dtype), np.empty(count, dtype=np.intp)
+    code = np.dtype(f"u{corners.dtype.itemsize}")
+    minus_zero = corners.dtype.type(-0.0).view(code)
+    found = number_points(corners.view(code), minus_zero, unique.view(code), place)
+    return unique[:found], place
