@@ -21,43 +21,63 @@ HEADER = re.compile(rb"(ST)?(C)?(N)?(4)?(n)?OFF")
 
 
 @dataclass(frozen=True, slots=True)
-class Header:
-    """What the first lines of the file say; row: the first line of the table after them."""
+class Kind:
+    """What the first word of the file says of each vertex."""
 
-    texture: bool
-    coloured: bool
-    normals: bool
-    vertices: int
-    faces: int
-    row: int
+    texture: bool = False
+    coloured: bool = False
+    normals: bool = False
 
     @property
     def widths(self) -> tuple[int, ...]:
-        """How many numbers a vertex line may hold: colours have three or four components."""
+        """How many numbers a vertex may have: colours have three or four components."""
         plain = 3 + 3 * self.normals + 2 * self.texture
         return (plain + 3, plain + 4) if self.coloured else (plain,)
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """What a polyhedron is made of."""
+
+    points: Floats
+    sizes: Ints
+    tail: Ints
+    face_colors: Floats | None
 
 
 def read(path: Path) -> Polyhedron:
     """The polyhedron of an OFF file: polygons, normals (N), colours of vertices (C) and of faces.
 
-    The word OFF may be missing, and the counts may follow it on its line. Texture coordinates (ST) are skipped. Colours
-    count to 1 or to 255. Raises FormatError with the line for anything that is not so, for 4OFF and nOFF (points of
-    another dimension), for binary files, and where the counts differ from what follows; only faces beyond the declared
-    ones are left out with a warning.
+    The word OFF may be missing, and the counts may follow it on its line. Vertices and faces stand one to a line, or
+    anyhow where nothing but them is in the file. Texture coordinates (ST) are skipped. Colours count to 1 or to 255.
+    Raises FormatError with the line for anything that is not so, for 4OFF and nOFF (points of another dimension), for
+    binary files, and where the counts differ from what follows; only faces beyond the declared ones are left out with a
+    warning.
 
     Source: http://www.geomview.org/docs/html/OFF.html
     """
-    text = read_text(path)
-    header = _header(text)
-    _require_counts(text, header)
-    split = header.row + header.vertices
-    vertices, normals, colors = _vertices(text.lines(header.row, split), header)
-    offsets, tail, face_colors = _faces(text.lines(split, split + header.faces), header.vertices)
-    return Polyhedron.from_corners(vertices, offsets, tail, normals=normals, colors=colors, face_colors=face_colors)
+    kind, text = _kind(read_text(path))
+    try:
+        parts = _by_lines(kind, text)
+    except FormatError:
+        # Numbers may be broken into lines anyhow; where they do not even then fit the counts, the first reason stands.
+        found = _loose_vertices(kind, text) or _loose(kind, text)
+        if found is None:
+            raise
+        parts = found
+    normals, colors = _tables(path, kind, parts.points)
+    return Polyhedron.from_corners(
+        parts.points[:, :3],
+        offsets_of(parts.sizes),
+        parts.tail,
+        normals=normals,
+        colors=colors,
+        face_colors=parts.face_colors,
+    )
 
 
-def _header(text: Text) -> Header:
+def _kind(text: Text) -> tuple[Kind, Text]:
+    """The kind of the file, and its text after the word that says so."""
     if not len(text):
         raise FormatError(f"{text.path}: the file holds no words; an OFF file starts with OFF and its counts")
     words = text.line(0).split()
@@ -65,63 +85,82 @@ def _header(text: Text) -> Header:
     if found is None and not words[0].isdigit():
         text.refuse(0, f"found {shown(words[0])}, but an OFF file starts with OFF (or COFF, NOFF, CNOFF, STOFF)")
     if found is None:
-        return _counted(text, (False, False, False), words, 0)
+        return Kind(), text
     texture, coloured, normals, four, general = (part is not None for part in found.groups())
     if four or general:
-        text.refuse(0, f"{shown(words[0])} holds points of another dimension; three coordinates a vertex are required")
+        text.refuse(
+            0, f"found {shown(words[0])}, but only points of three dimensions are read, not of another dimension"
+        )
     if words[1:2] == [b"BINARY"]:
-        text.refuse(0, "binary OFF is not read; save the mesh as text or as PLY")
-    if len(words) == 1 and len(text) == 1:
+        text.refuse(0, "this is binary OFF, which is not read; save the file as text")
+    if len(text) == 1 and len(words) == 1:
         text.refuse(0, "the file ends after its header; the counts of vertices, faces and edges are required")
-    flags = (texture, coloured, normals)
-    return _counted(text, flags, words[1:], 0) if len(words) > 1 else _counted(text, flags, text.line(1).split(), 1)
+    return Kind(texture, coloured, normals), text.without_first_word()
 
 
-def _counted(text: Text, flags: tuple[bool, bool, bool], words: list[bytes], row: int) -> Header:
+# ---- one vertex or face to a line ---------------------------------------------------------------------------------
+
+
+def _by_lines(kind: Kind, text: Text) -> Parts:
+    vertices, faces = _counts(text)
+    _require_counts(text, vertices, faces)
+    points = _vertices(text.lines(1, 1 + vertices), kind)
+    return Parts(points, *_faces(text.lines(1 + vertices, 1 + vertices + faces), vertices))
+
+
+def _counts(text: Text) -> tuple[int, int]:
+    words = text.line(0).split()
     if len(words) not in (2, 3) or not all(word.isdigit() and len(word) < 19 for word in words):
-        text.refuse(row, f"found {shown(b' '.join(words))}, but the counts of vertices, faces and edges are required")
-    return Header(*flags, int(words[0]), int(words[1]), row + 1)
+        text.refuse(0, f"found {shown(b' '.join(words))}, but the counts of vertices, faces and edges are required")
+    return int(words[0]), int(words[1])
 
 
-def _require_counts(text: Text, header: Header) -> None:
-    present = len(text) - header.row
-    declared = header.vertices + header.faces
+def _require_counts(text: Text, vertices: int, faces: int) -> None:
+    present = len(text) - 1
+    declared = vertices + faces
     if present < declared:
         raise FormatError(
-            f"{text.path}, line {text.number[header.row - 1]}: {header.vertices} vertices and {header.faces} faces are "
-            f"declared, but {present} lines follow; is the file cut short?"
+            f"{text.path}, line {text.number[0]}: {vertices} vertices and {faces} faces are declared, but {present} "
+            "lines follow; is the file cut short?"
         )
     if present > declared:
-        _require_faces_alone(text, header, header.row + declared)
+        _require_faces_alone(text, vertices, faces)
 
 
-def _require_faces_alone(text: Text, header: Header, row: int) -> None:
+def _require_faces_alone(text: Text, vertices: int, faces: int) -> None:
     """Faces beyond the declared ones are left out with a warning, as other readers do; anything else is refused."""
+    row = 1 + vertices + faces
     try:
-        offsets, _, _ = _faces(text.lines(row, len(text)), header.vertices)
+        sizes, _, _ = _faces(text.lines(row, len(text)), vertices)
     except FormatError:
         text.refuse(row, "the file goes on after its last face; do the counts fit the lines?")
+    found = "1 face line" if len(sizes) == 1 else f"{len(sizes)} face lines"
     place = f"{text.path}, line {text.number[row]}"
-    count = len(offsets) - 1
-    found = "1 face line" if count == 1 else f"{count} face lines"
-    warnings.warn(f"{place}: {found} more than the {header.faces} declared; left out", stacklevel=2)
+    warnings.warn(f"{place}: {found} more than the {faces} declared; left out", stacklevel=2)
 
 
-def _vertices(text: Text, header: Header) -> tuple[Floats, Floats | None, Floats | None]:
-    width = int(text.words[0]) if len(text) and text.words[0] in header.widths else header.widths[0]
-    wrong = np.flatnonzero(text.words != width)
-    if len(wrong):
-        required = " or ".join(map(str, header.widths))
-        text.refuse(int(wrong[0]), f"found {text.words[wrong[0]]} numbers, but a vertex has {required}")
-    table = text.numbers().reshape(-1, width)
-    normals = table[:, 3:6] if header.normals else None
-    start = 6 if header.normals else 3
-    colors = colours(table[:, start : width - 2 * header.texture]) if header.coloured else None
-    require_colours(colors, text.path)
-    return table[:, :3], normals, colors
+def _vertices(text: Text, kind: Kind) -> Floats:
+    width = int(text.words[0]) if len(text) and text.words[0] in kind.widths else kind.widths[0]
+    wrong = text.words != width
+    if wrong.any():
+        required = " or ".join(map(str, kind.widths))
+        row = int(wrong.argmax())
+        text.refuse(row, f"found {text.words[row]} numbers, but a vertex has {required}")
+    return text.numbers().reshape(-1, width)
+
+
+def _tables(path: Path, kind: Kind, points: Floats) -> tuple[Floats | None, Floats | None]:
+    """Normals and colours of the vertices."""
+    normals = points[:, 3:6] if kind.normals else None
+    start = 6 if kind.normals else 3
+    colors = colours(points[:, start : points.shape[1] - 2 * kind.texture]) if kind.coloured else None
+    require_colours(colors, path)
+    return normals, colors
 
 
 def _faces(text: Text, vertex_count: int) -> tuple[Ints, Ints, Floats | None]:
+    """The sizes, corners and colours of faces."""
+
     def place(face: int) -> str:
         return f"{text.path}, line {text.number[face]}"
 
@@ -130,7 +169,7 @@ def _faces(text: Text, vertex_count: int) -> tuple[Ints, Ints, Floats | None]:
     require_sizes(sizes, place)
     _require_words(text, sizes)
     tail = corners(values[ragged(first + 1, sizes)], sizes, vertex_count, place)
-    return offsets_of(sizes), tail, _face_colours(text.path, values, first + 1 + sizes, words - 1 - sizes)
+    return sizes, tail, _face_colours(text.path, values, first + 1 + sizes, words - 1 - sizes)
 
 
 def _require_words(text: Text, sizes: Ints) -> None:
@@ -152,3 +191,58 @@ def _face_colours(path: Path, values: Floats, first: Ints, sizes: Ints) -> Float
     table = colours(values[ragged(first, sizes)].reshape(len(sizes), -1))
     require_colours(table, path)
     return table
+
+
+# ---- numbers broken into lines anyhow -----------------------------------------------------------------------------
+
+
+def _loose_vertices(kind: Kind, text: Text) -> Parts | None:
+    """Faces one to a line after vertices in lines of any length; None where that does not fit the counts."""
+    try:
+        vertices, faces = _counts(text)
+    except FormatError:
+        return None
+    ends = np.cumsum(text.words[1:])
+    for width in kind.widths:
+        row = 2 + int(np.searchsorted(ends, vertices * width))
+        if len(text) - row == faces > 0 and ends[row - 2] == vertices * width:
+            points = text.lines(1, row).numbers().reshape(-1, width)
+            return Parts(points, *_faces(text.lines(row, len(text)), vertices))
+    return None
+
+
+def _loose(kind: Kind, text: Text) -> Parts | None:
+    """Counts, vertices and faces without colours in lines of any length; None where that does not fit the counts."""
+    try:
+        values = text.numbers()
+    except FormatError:
+        return None
+    if len(values) < 3 or (values[:3] != np.floor(np.abs(values[:3]))).any() or (values[:3] > len(values)).any():
+        return None
+    vertices, count = int(values[0]), int(values[1])
+    for width in kind.widths:
+        start = 3 + vertices * width
+        firsts = _face_starts(values, start, count)
+        if firsts is not None:
+            return _loose_parts(text, values[3:start].reshape(-1, width), values, firsts)
+    return None
+
+
+def _face_starts(values: Floats, at: int, count: int) -> Ints | None:
+    """Where the count of each face stands, if these faces fill the numbers from `at` on."""
+    starts = []
+    for _ in range(count):
+        if at >= len(values) or not 3 <= values[at] <= len(values) or values[at] % 1:
+            return None
+        starts.append(at)
+        at += 1 + int(values[at])
+    return np.array(starts, dtype=np.intp) if at == len(values) else None
+
+
+def _loose_parts(text: Text, points: Floats, values: Floats, starts: Ints) -> Parts:
+    def place(face: int) -> str:
+        row = int(np.searchsorted(text.first, starts[face], side="right")) - 1
+        return f"{text.path}, line {text.number[row]}"
+
+    sizes = values[starts].astype(np.intp)
+    return Parts(points, sizes, corners(values[ragged(starts + 1, sizes)], sizes, len(points), place), None)

@@ -83,12 +83,23 @@ def tables(path: Path, data: bytes, header: Header) -> Iterator[Table]:
 
 def _from_text(path: Path, data: bytes, header: Header) -> Iterator[Table]:
     text = table(path, plain(path, data[header.size :]), line=header.lines + 1)
+    try:
+        return iter(list(_by_lines(text, header)))
+    except FormatError:
+        # Rows may be broken into lines anyhow; where they do not even then fit the header, the first reason stands.
+        found = _loose(text, header)
+        if found is None:
+            raise
+        return iter(found)
+
+
+def _by_lines(text: Text, header: Header) -> Iterator[Table]:
     row = 0
     for element in header.elements:
         if element.rows > len(text) - row:
             raise FormatError(
-                f"{path}: {element.rows} rows of '{element.name}' are declared, but {len(text) - row} lines are left; "
-                "is the file cut short?"
+                f"{text.path}: {element.rows} rows of '{element.name}' are declared, but {len(text) - row} lines are "
+                "left; is the file cut short?"
             )
         yield _text_table(text.lines(row, row + element.rows), element)
         row += element.rows
@@ -102,6 +113,44 @@ def _text_table(lines: Text, element: Element) -> Table:
 
     first = lines.first
     return _walked(element, Words(lines.numbers()), first, first + lines.words, place)
+
+
+def _loose(text: Text, header: Header) -> list[Table] | None:
+    """The tables where rows stand in lines of any length; None where they do not fill the file."""
+    try:
+        values = text.numbers()
+    except FormatError:
+        return None
+    found, at = [], 0
+    for element in header.elements:
+        starts = _word_starts(values, at, element)
+        if starts is None:
+            return None
+        found.append(_walked(element, Words(values), starts[:-1], starts[1:], _place_of_word(text, starts)))
+        at = int(starts[-1])
+    return found if at == len(values) else None
+
+
+def _word_starts(values: NDArray[np.float64], at: int, element: Element) -> Ints | None:
+    """The word where each row starts, and where the last one ends; None where they do not fit."""
+    starts = [at]
+    for _ in range(element.rows):
+        for column in element.properties:
+            if at >= len(values) or (column.count and not 0 <= values[at] <= len(values)):
+                return None
+            at += 1 + (int(values[at]) if column.count else 0)
+        starts.append(at)
+        if at > len(values) or (at == starts[-2] and len(starts) > len(values)):
+            return None
+    return np.array(starts, dtype=np.intp)
+
+
+def _place_of_word(text: Text, starts: Ints) -> Place:
+    def place(row: int) -> str:
+        line = int(np.searchsorted(text.first, starts[row], side="right")) - 1
+        return f"{text.path}, line {text.number[line]}"
+
+    return place
 
 
 def _from_bytes(path: Path, data: bytes, header: Header) -> Iterator[Table]:

@@ -88,6 +88,9 @@ class _Parser:
         self._line += 1
         if self._order is None:
             self._refuse("the header has no line 'format'")
+        for element in self._elements:
+            if element.rows and not element.properties:
+                self._refuse(f"the element '{element.name}' has {element.rows} rows but no property")
         return self._order, self._elements
 
     def _statement(self, words: list[bytes]) -> None:

@@ -25,8 +25,8 @@ def powers_of_ten(*, rounded_up: bool) -> NDArray[np.uint64]:
 def _leading(k: int, rounded_up: bool) -> int:
     """The first 128 bits of 5^k, which are those of 10^k."""
     if k < 0:
-        return _reciprocal(5**-k)
-    power = 5**k
+        return _reciprocal(5 ** abs(k))
+    power: int = 5**k
     excess = power.bit_length() - 128
     if excess <= 0:
         return power << -excess

@@ -73,6 +73,15 @@ class Text:
             data[self.begin + k] = BLANK
         return replace(self, data=data, begin=self.begin + length, words=self.words - 1)
 
+    def without_first_word(self) -> Text:
+        """The same text without its first word."""
+        if self.words[0] == 1:
+            return self.lines(1, len(self))
+        begin, words = self.begin.copy(), self.words.copy()
+        rest = self.line(0).split(None, 1)[1]
+        begin[0], words[0] = self.end[0] - len(rest), words[0] - 1
+        return replace(self, begin=begin, words=words)
+
     def line(self, row: int) -> bytes:
         """The bytes of one line, from its first word on."""
         return self.data[self.begin[row] : self.end[row]].tobytes()
