@@ -1,4 +1,4 @@
-"""Flips: a triangulation made Delaunay by Ptolemy flips, every flip logged so that it can be undone."""
+"""Flips: a triangulation made Delaunay by flipping edges, every flip logged so that it can be undone."""
 
 from __future__ import annotations
 
@@ -35,9 +35,8 @@ class Flippable:
         """The same state in arrays of its own."""
         other = object.__new__(Flippable)
         other.vertices, other.log = self.vertices, self.log
-        other.tail, other.twin, other.same, other.x = (
-            a.copy() for a in (self.tail, self.twin, self.same, self.x)
-        )
+        other.tail, other.twin = self.tail.copy(), self.twin.copy()
+        other.same, other.x = self.same.copy(), self.x.copy()
         return other
 
     def scaled(self, u: Floats) -> Flippable:
@@ -48,9 +47,13 @@ class Flippable:
         other.make_delaunay()
         return other
 
-    def make_delaunay(self) -> None:
-        """Flip until the angles opposite to every edge say that it is Delaunay; ends since each flip lowers an energy."""
-        moves = _make_delaunay(self.tail, self.twin, self.same, self.x)
+    def make_delaunay(self, *, flat: bool = False) -> None:
+        """Flip until every edge is Delaunay by the two angles opposite to it; ends since each flip lowers an energy.
+
+        flat: the triangles are Euclidean and a new edge is the diagonal of their flat quadrilateral, so that the
+        polyhedral metric stays; otherwise Ptolemy's relation gives it, so that the discrete conformal class stays.
+        """
+        moves = _make_delaunay(self.tail, self.twin, self.same, self.x, flat)
         self.log = np.concatenate([self.log, moves])
 
     def mesh(self) -> Polyhedron:
@@ -79,7 +82,7 @@ def _cosine_sum(x: Floats, h: int, t: int) -> float:
     """Twice the sum of the two opposite cosines in terms of x; negative where the edge is not Delaunay."""
     e, a, b = x[h], x[_following(h)], x[_following(_following(h))]
     c, d = x[_following(t)], x[_following(_following(t))]
-    return (a * a + b * b - e * e) / (a * b) + (c * c + d * d - e * e) / (c * d)
+    return float((a * a + b * b - e * e) / (a * b) + (c * c + d * d - e * e) / (c * d))
 
 
 @njit(cache=True)
@@ -103,34 +106,44 @@ def _reverse_face(tail: Ints, twin: Ints, same: Bools, x: Floats, face: int) -> 
 
 
 @njit(cache=True)
-def _flip(tail: Ints, twin: Ints, same: Bools, x: Floats, h: int) -> None:
-    """Replace the edge i-j in slot h by k-l: faces (i, j, k) and (j, i, l) become (l, k, i) and (k, l, j)."""
+def _flat_diagonal(e: float, ik: float, jk: float, im: float, jm: float) -> float:
+    """The distance of k and m on both sides of an edge i-j of length e in the plane."""
+    along_k, along_m = (ik * ik - jk * jk + e * e) / (2 * e), (im * im - jm * jm + e * e) / (2 * e)
+    above, below = max(ik * ik - along_k**2, 0.0), max(im * im - along_m**2, 0.0)
+    return float(np.hypot(along_k - along_m, np.sqrt(above) + np.sqrt(below)))
+
+
+@njit(cache=True)
+def _flip(tail: Ints, twin: Ints, same: Bools, x: Floats, h: int, flat: bool) -> None:
+    """Replace the edge i-j in slot h by k-m: faces (i, j, k) and (j, i, m) become (m, k, i) and (k, m, j)."""
     t = twin[h]
     hn, hp = _following(h), _following(_following(h))
     tn, tp = _following(t), _following(_following(t))
-    j, i, k, l = tail[hn], tail[h], tail[hp], tail[tp]
+    j, i, k, m = tail[hn], tail[h], tail[hp], tail[tp]
     x_new = (x[hn] * x[tn] + x[hp] * x[tp]) / x[h]
+    if flat:
+        x_new = _flat_diagonal(x[h], x[hp], x[hn], x[tn], x[tp])
     sources = (hp, tn, tp, hn)
     targets = (hn, hp, tn, tp)
     partners = np.empty(4, dtype=np.intp)
     flags = np.empty(4, dtype=np.bool_)
     sides = np.empty(4)
-    for k_ in range(4):
-        partner = twin[sources[k_]]
-        for m in range(4):
-            if twin[sources[k_]] == sources[m]:
-                partner = targets[m]
-        partners[k_], flags[k_], sides[k_] = partner, same[sources[k_]], x[sources[k_]]
-    for k_ in range(4):
-        twin[targets[k_]], same[targets[k_]], x[targets[k_]] = partners[k_], flags[k_], sides[k_]
-        twin[partners[k_]] = targets[k_]
-    tail[h], tail[hn], tail[hp] = l, k, i
-    tail[t], tail[tn], tail[tp] = k, l, j
+    for n in range(4):
+        partner = twin[sources[n]]
+        for other in range(4):
+            if twin[sources[n]] == sources[other]:
+                partner = targets[other]
+        partners[n], flags[n], sides[n] = partner, same[sources[n]], x[sources[n]]
+    for n in range(4):
+        twin[targets[n]], same[targets[n]], x[targets[n]] = partners[n], flags[n], sides[n]
+        twin[partners[n]] = targets[n]
+    tail[h], tail[hn], tail[hp] = m, k, i
+    tail[t], tail[tn], tail[tp] = k, m, j
     x[h] = x[t] = x_new
 
 
 @njit(cache=True)
-def _make_delaunay(tail: Ints, twin: Ints, same: Bools, x: Floats) -> Ints:
+def _make_delaunay(tail: Ints, twin: Ints, same: Bools, x: Floats, flat: bool) -> Ints:
     size = len(tail)
     queue = [h for h in range(size) if h < twin[h]]
     waiting = np.zeros(size, dtype=np.bool_)
@@ -149,7 +162,7 @@ def _make_delaunay(tail: Ints, twin: Ints, same: Bools, x: Floats) -> Ints:
             log.append((face, 1))
             # The edges of the face have other slots now: all of them are looked at again.
             t = twin[h]
-        _flip(tail, twin, same, x, h)
+        _flip(tail, twin, same, x, h, flat)
         log.append((h, 0))
         for s in (3 * (h // 3), 3 * (t // 3)):
             for k in range(3):
@@ -205,7 +218,7 @@ def _unflip(
     tail: Ints, twin: Ints, same: Bools, forth: Floats, back: Floats, h: int, t: int, hn: int, hp: int, tn: int, tp: int
 ) -> None:
     """The inverse of `_flip`, with the matrices of the four outer sides."""
-    l, k, i, j = tail[h], tail[hn], tail[hp], tail[tp]
+    k, i, j, m = tail[hn], tail[hp], tail[tp], tail[h]
     sources = (hn, hp, tn, tp)
     targets = (hp, tn, tp, hn)
     partners = np.empty(4, dtype=np.intp)
@@ -213,9 +226,9 @@ def _unflip(
     a, b = np.empty((4, 3, 3)), np.empty((4, 3, 3))
     for n in range(4):
         partner = twin[sources[n]]
-        for m in range(4):
-            if twin[sources[n]] == sources[m]:
-                partner = targets[m]
+        for other in range(4):
+            if twin[sources[n]] == sources[other]:
+                partner = targets[other]
         partners[n], flags[n] = partner, same[sources[n]]
         a[n], b[n] = forth[sources[n]], back[sources[n]]
     for n in range(4):
@@ -223,4 +236,4 @@ def _unflip(
         twin[s], same[s], forth[s], back[s] = partners[n], flags[n], a[n], b[n]
         twin[partners[n]] = s
     tail[h], tail[hn], tail[hp] = i, j, k
-    tail[t], tail[tn], tail[tp] = j, i, l
+    tail[t], tail[tn], tail[tp] = j, i, m

@@ -32,9 +32,10 @@ class Scaling:
 def scaled(mesh: Polyhedron) -> Scaling:
     """The hyperbolic metric that is discretely conformal to the mesh: sinh(l/2) = exp((u_i + u_j)/2) L_ij.
 
-    Newton on the convex energy whose gradient is 2 pi minus the angle sum. After every change of u the triangulation
-    is made Delaunay again by Ptolemy flips, which leave the metric alone; with them the solution exists and is unique
-    for every mesh with chi < 0 (Gu, Guo, Luo, Sun, Wu 2018; Springborn 2019; Gillespie, Springborn, Crane 2021).
+    Newton on the convex energy whose gradient is 2 pi minus the angle sum. The triangulation is first made Delaunay in
+    the metric of the mesh, and after every change of u again by Ptolemy flips, which stay in the conformal class; with
+    them the solution exists and is unique for every mesh with chi < 0 (Gu, Guo, Luo, Sun, Wu 2018; Springborn 2019;
+    Gillespie, Springborn, Crane 2021).
     Raises MapError where it stalls in rounding.
     """
     corners = mesh.vertices[mesh.triangles]
@@ -43,7 +44,7 @@ def scaled(mesh: Polyhedron) -> Scaling:
     if not (mesh.edge_lengths.min() > 0 and area > 0):
         raise MapError("vertex scaling needs edges of positive length; weld coincident vertices first")
     start = Flippable(mesh, mesh.edge_lengths * np.sqrt(2 * np.pi * abs(chi) / area) / 2)
-    start.make_delaunay()
+    start.make_delaunay(flat=True)
     state = _State(start)
     tolerance = max(_TOLERANCE, 4e-16 * float(np.bincount(mesh.tail).max()))
     for step in range(_STEPS):
@@ -108,8 +109,9 @@ def _direction(state: _State) -> Floats:
         values.append(-(by_opposite + by_next))
     i, j = (np.concatenate(part) for part in zip(*ends, strict=True))
     # A flipped edge is fill in the order of another triangulation: a new one costs far less.
-    solve = Elimination.of(state.triangulation.mesh()).solver(i, j, np.concatenate(values), diagonal)
-    return solve(-state.curvatures)
+    entries: Floats = np.concatenate(values).astype(np.float64)
+    solve = Elimination.of(state.triangulation.mesh()).solver(i, j, entries, diagonal)
+    return solve(np.asarray(-state.curvatures, dtype=np.float64))
 
 
 def _searched(state: _State, step: Floats) -> _State | None:
