@@ -19,9 +19,9 @@ Ints = NDArray[np.intp]
 class Refinement:
     """A triangle mesh and its k-fold refinement.
 
-    coarse, polyhedron: the mesh before and after; density: k; face: (V,) and barycentric: (V, 3), one place on the
-    coarse mesh for every vertex of the fine one (face 0 for a vertex in no face). The first vertices are the coarse
-    ones; the fine triangles of coarse face f are f k^2 to (f + 1) k^2 - 1.
+    coarse, polyhedron: the mesh before and after; density: k; face: (V,) and barycentric: (V, 3), the place of every
+    vertex of the fine mesh in the first face of the coarse one that holds it (a vertex in no face is given face 0).
+    The first vertices are the coarse ones; the fine triangles of coarse face f are f k^2 to (f + 1) k^2 - 1.
     """
 
     coarse: Polyhedron
@@ -42,10 +42,10 @@ def refine(polyhedron: Polyhedron, density: int) -> Refinement:
     triangles, old, grid = polyhedron.triangles, len(polyhedron.vertices), _grid(density)
     points = _grid_indices(polyhedron, grid)
     count = old + polyhedron.edge_count * (density - 1) + polyhedron.face_count * len(grid.inner)
-    face, place = np.zeros(count, dtype=np.intp), np.zeros(count, dtype=np.intp)
-    # Reversed, so that the first face that holds a vertex speaks for it.
-    face[points[::-1]] = np.arange(len(points))[::-1, None]
-    place[points[::-1]] = np.arange(points.shape[1])
+    # The first face that holds a vertex speaks for it.
+    spot = np.full(count, points.size)
+    np.minimum.at(spot, points.ravel(), np.arange(points.size))
+    face, place = np.divmod(np.where(spot < points.size, spot, 0), points.shape[1])
     weights = grid.barycentric[place]
     new = np.einsum("nc,nci->ni", weights[old:], polyhedron.vertices[triangles[face[old:]]])
     vertices = np.concatenate([polyhedron.vertices, new])

@@ -81,7 +81,7 @@ class Triangulation:
                 "surface; let the group come from the mesh (group.method = 'mesh')"
             )
         sign = np.where(label[:count] == label[0], 1.0, -1.0)
-        return sign if float(sign @ np.sign(self._raw_areas)) >= 0 else -sign
+        return sign if float(sign @ np.sign(np.nan_to_num(self._raw_areas))) >= 0 else -sign
 
     @cached_property
     def _raw_areas(self) -> Floats:
