@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
 from orbiframe_parametrizers.flips import Flippable
 
@@ -69,7 +68,7 @@ def test_flat_flips_of_a_planar_grid_give_true_distances() -> None:
     inner = ((grid > 0) & (grid < n - 1)).all(axis=1)
     grid[inner] += rng.uniform(-0.45, 0.45, (inner.sum(), 2))
     cell = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()[:, None]
-    front = np.concatenate([cell + [0, n, n + 1], cell + [0, n + 1, 1]])
+    front = np.concatenate([cell + np.array([0, n, n + 1]), cell + np.array([0, n + 1, 1])])
     number = np.arange(n * n)
     number[inner] += n * n
     back = number[front][:, ::-1]
@@ -80,7 +79,8 @@ def test_flat_flips_of_a_planar_grid_give_true_distances() -> None:
     state.make_delaunay(flat=True)
     assert len(state.log) > 0
     head = np.roll(state.triangles, -1, axis=1).ravel()
-    inside = inner[used % (n * n)]
+    # Near the fold an edge may well run over it.
+    inside = ((grid > 1.5) & (grid < n - 2.5)).all(axis=1)[used % (n * n)]
     sheet = used >= n * n
     kept = inside[state.tail] & inside[head] & (sheet[state.tail] == sheet[head])
     straight = np.linalg.norm(points[state.tail] - points[head], axis=1)
