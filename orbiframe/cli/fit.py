@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from orbiframe.cli.destination import require_destination, require_folder, require_other_file
 from orbiframe.cli.progress import Progress
+from orbiframe.cli.repairs import add_repairs, repaired, repairs_asked
 from orbiframe.cli.report import json_text, summary, write_report
 from orbiframe.registry import Registry
+
+if TYPE_CHECKING:
+    from orbiframe.config import Config
+    from orbiframe.polyhedron import Polyhedron
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -26,6 +32,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--save", metavar="FILE", type=Path, help="write the surface itself, to be evaluated anywhere")
     add("--json", action="store_true", help="print the report as JSON instead of the summary")
     add("--quiet", action="store_true", help="print nothing but errors")
+    add_repairs(parser)
     parser.set_defaults(run=run)
 
 
@@ -40,7 +47,8 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
         registry.add_file(path)
     config.checked(registry)
     _require_destinations(args, registry)
-    result = pipeline.fit(args.mesh, config, registry, Progress(quiet=args.quiet))
+    mesh = _repaired(args, config, registry) if repairs_asked(args) else args.mesh
+    result = pipeline.fit(mesh, config, registry, Progress(quiet=args.quiet))
     formats.write(args.output, result.output, registry)
     if args.save:
         save_surface(result.surface, args.save)
@@ -49,6 +57,14 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     if not args.quiet:
         print(json_text(result.report) if args.json else summary(result.report))
     return 0
+
+
+def _repaired(args: argparse.Namespace, config: Config, registry: Registry) -> Polyhedron:
+    from orbiframe import formats
+
+    format = None if config.mesh.open else config.mesh.name
+    mesh = formats.read(args.mesh, registry, format=format, degenerate=args.drop_degenerate)
+    return repaired(mesh, args, quiet=args.quiet)
 
 
 def overrides(args: argparse.Namespace) -> list[str]:

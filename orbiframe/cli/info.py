@@ -1,78 +1,79 @@
-"""orbiframe info: which surface a mesh is, and what is wrong with it."""
+"""orbiframe info: which surface a mesh is, its sizes, and what is wrong with it."""
 
 from __future__ import annotations
 
 import argparse
 import json
-import sys
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from orbiframe.errors import FormatError, TopologyError
+from orbiframe.cli.description import description, lines
+from orbiframe.cli.report import plain
+from orbiframe.cli.streams import read
+from orbiframe.errors import OrbiframeError, UsageError
 from orbiframe.registry import Registry
 
-if TYPE_CHECKING:
-    from orbiframe.polyhedron import Polyhedron
+Described = dict[str, Any]
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("files", metavar="FILE", type=Path, nargs="+", help="meshes to look at")
-    parser.add_argument("-i", "--input-format", metavar="FORMAT", help="name of a reader, instead of the suffix")
+    parser.add_argument("files", metavar="FILE", type=Path, nargs="+", help="meshes to look at; - for a stream")
+    parser.add_argument("-i", "--input-format", metavar="FORMAT", help="name or suffix of a reader")
     parser.add_argument("--json", action="store_true", help="print one JSON object on one line for each file")
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace, registry: Registry) -> int:
     """Look at every file; the status is 1 if one cannot be read."""
-    from orbiframe import formats
+    if args.json:
+        return _show_json(args, registry)
+    if len(args.files) > 1:
+        return _show_table(args, registry)
+    print("\n".join(lines(_described(args.files[0], args, registry))))
+    return 0
 
-    status = 0
+
+def _described(path: Path, args: argparse.Namespace, registry: Registry) -> Described:
+    return description(read(path, registry, args.input_format, degenerate=True))
+
+
+def _outcomes(args: argparse.Namespace, registry: Registry) -> Iterator[tuple[Path, Described]]:
+    """Every file with its description, or with the error that it is."""
     for path in args.files:
         try:
-            described = description(formats.read(path, registry, format=args.input_format))
-        except (FormatError, TopologyError) as error:
-            print(f"orbiframe: {error}", file=sys.stderr)
-            status = 1
-            continue
-        if args.json:
-            print(json.dumps({"file": str(path), **{k: v for k, v in described.items() if k != "name"}}))
-        else:
-            print(text(described, str(path) if len(args.files) > 1 else None))
+            yield path, _described(path, args, registry)
+        except UsageError:
+            raise
+        except OrbiframeError as error:
+            yield path, {"error": str(error)}
+
+
+def _show_json(args: argparse.Namespace, registry: Registry) -> int:
+    status = 0
+    for path, found in _outcomes(args, registry):
+        print(json.dumps({"file": str(path), **plain(found)}, allow_nan=False), flush=True)
+        status |= "error" in found
     return status
 
 
-def description(polyhedron: Polyhedron) -> dict[str, Any]:
-    """The numbers and defects of a polyhedron as plain data."""
-    import numpy as np
-
-    from orbiframe.topology import defects, surface_type
-
-    surface = surface_type(polyhedron)
-    sizes, counts = np.unique(polyhedron.face_sizes, return_counts=True)
-    return {
-        "name": surface.name,
-        "vertices": len(polyhedron.vertices),
-        "edges": polyhedron.edge_count,
-        "faces": polyhedron.face_count,
-        "face_sizes": {str(size): int(count) for size, count in zip(sizes, counts, strict=True)},
-        "components": surface.components,
-        "closed": surface.closed,
-        "orientable": surface.orientable,
-        "euler_characteristic": surface.euler_characteristic,
-        "genus": surface.genus,
-        "defects": [{"kind": d.kind, "count": d.count, "where": d.where} for d in defects(polyhedron)],
-    }
+def _show_table(args: argparse.Namespace, registry: Registry) -> int:
+    outcomes = list(_outcomes(args, registry))
+    head = ("file", "vertices", "edges", "faces", "surface", "defects")
+    rows = [head, *(_row(path, found) for path, found in outcomes)]
+    widths = [max(len(row[k]) for row in rows if len(row) == len(head)) for k in range(len(head) - 1)]
+    widths[0] = max(len(row[0]) for row in rows)
+    for row in rows:
+        cells = [cell.ljust(width) for cell, width in zip(row, widths, strict=False)]
+        print("  ".join([*cells, *row[len(cells) :]]).rstrip())
+    return int(any("error" in found for _, found in outcomes))
 
 
-def text(described: dict[str, Any], title: str | None = None) -> str:
-    """The description in lines; the first names the surface (after the title, if there is one)."""
-    sizes = ", ".join(f"{count} of {size} corners" for size, count in described["face_sizes"].items())
-    first = described["name"] if title is None else f"{title}: {described['name']}"
-    lines = [
-        first,
-        f"{described['vertices']} vertices, {described['edges']} edges, {described['faces']} faces ({sizes or 'none'})",
-        f"Euler characteristic {described['euler_characteristic']}",
-        *(f"defect: {d['count']} {d['kind']}: {d['where']}" for d in described["defects"]),
-    ]
-    return "\n".join(lines)
+def _row(path: Path, found: Described) -> tuple[str, ...]:
+    """The cells of a file: name, counts, surface and defects; name and error."""
+    if "error" in found:
+        return str(path), f"error: {found['error'].removeprefix(f'{path}').lstrip(':, ')}"
+    counts = (str(found[key]) for key in ("vertices", "edges", "faces"))
+    defects = ", ".join(f"{defect['count']} {defect['kind']}" for defect in found["defects"])
+    return str(path), *counts, found["surface"], defects or "none"

@@ -22,7 +22,7 @@ def write_report(path: Path, report: Mapping[str, Any]) -> None:
 
 def json_text(report: Mapping[str, Any]) -> str:
     """A report as JSON; numbers that are not finite become null, which JSON has."""
-    return json.dumps(_plain(report), indent=2, allow_nan=False)
+    return json.dumps(plain(report), indent=2, allow_nan=False)
 
 
 def summary(report: Mapping[str, Any]) -> str:
@@ -53,9 +53,10 @@ def _counted(count: int, one: str, many: str) -> str:
     return f"{count} {one if count == 1 else many}"
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
+    """Data that JSON can hold: numbers that are not finite become None."""
     if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
+        return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
+        return [plain(item) for item in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,97 @@
+"""Description: what there is to say of a mesh, as plain data and in lines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from orbiframe.polyhedron import Polyhedron
+
+
+def description(polyhedron: Polyhedron) -> dict[str, Any]:
+    """The surface, counts, sizes, defects and notes of a polyhedron as plain data.
+
+    Lengths are those of the file. volume: signed, null unless the polyhedron is closed and orientable.
+    """
+    import numpy as np
+
+    from orbiframe import measure
+    from orbiframe.topology import defects, surface_type
+
+    surface = surface_type(polyhedron)
+    lengths, valences = measure.edge_lengths(polyhedron), measure.valences(polyhedron)
+    return {
+        "surface": surface.name,
+        "vertices": len(polyhedron.vertices),
+        "edges": polyhedron.edge_count,
+        "faces": polyhedron.face_count,
+        "face_sizes": _counts(polyhedron.face_sizes),
+        "components": surface.components,
+        "closed": surface.closed,
+        "orientable": surface.orientable,
+        "euler_characteristic": surface.euler_characteristic,
+        "genus": surface.genus,
+        "box": [polyhedron.vertices.min(axis=0).tolist(), polyhedron.vertices.max(axis=0).tolist()],
+        "area": measure.area(polyhedron),
+        "volume": measure.signed_volume(polyhedron),
+        "edge_lengths": {name: float(find(lengths)) for name, find in _spread(np)},
+        "valences": {name: float(find(valences)) for name, find in _spread(np)},
+        "defects": [asdict(defect) for defect in defects(polyhedron)],
+        "notes": [asdict(note) for note in measure.notes(polyhedron)],
+    }
+
+
+def lines(described: dict[str, Any]) -> Iterator[str]:
+    """A description in lines; the first names the surface."""
+    sizes = ", ".join(f"{count} of {size} corners" for size, count in described["face_sizes"].items())
+    yield described["surface"]
+    yield f"{described['vertices']} vertices, {described['edges']} edges, {described['faces']} faces ({sizes})"
+    yield f"Euler characteristic {described['euler_characteristic']}"
+    low, high = described["box"]
+    sides = " x ".join(_number(b - a) for a, b in zip(low, high, strict=True))
+    yield f"box {sides}, from {_point(low)} to {_point(high)}"
+    yield f"area {_number(described['area'])}{_volume(described['volume'])}"
+    yield f"edge lengths {_range(described['edge_lengths'])}; valences {_range(described['valences'])}"
+    for defect in described["defects"]:
+        remedy = f"; {defect['remedy']} helps" if defect["remedy"] else ""
+        yield f"defect: {_title(defect)}: {defect['where']}{remedy}"
+    for note in described["notes"]:
+        yield f"note: {note['kind']}: {note['where']}"
+
+
+def _title(defect: dict[str, Any]) -> str:
+    from orbiframe.topology import Defect
+
+    return str(Defect(**defect))
+
+
+def _counts(values: Any) -> dict[str, int]:
+    import numpy as np
+
+    found, counts = np.unique(values, return_counts=True)
+    return {str(value): int(count) for value, count in zip(found, counts, strict=True)}
+
+
+def _spread(np: Any) -> Iterable[tuple[str, Any]]:
+    return ("min", np.min), ("median", np.median), ("max", np.max)
+
+
+def _range(spread: dict[str, float]) -> str:
+    return f"{_number(spread['min'])} to {_number(spread['max'])}, median {_number(spread['median'])}"
+
+
+def _volume(volume: float | None) -> str:
+    if volume is None:
+        return ""
+    inward = " (faces look inward; --orient helps)" if volume < 0 else ""
+    return f", volume {_number(volume)}{inward}"
+
+
+def _point(coordinates: list[float]) -> str:
+    return f"({', '.join(map(_number, coordinates))})"
+
+
+def _number(value: float) -> str:
+    return f"{value:.6g}"

@@ -1,0 +1,147 @@
+"""Streams: meshes from the standard input and to the standard output, and formats chosen by name or by suffix."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from orbiframe.errors import FormatError, PluginError, UsageError
+from orbiframe.registry import Registry
+
+if TYPE_CHECKING:
+    from orbiframe.polyhedron import Polyhedron
+
+STREAM = Path("-")
+_BLOCK = 2**20
+
+
+class Choice(NamedTuple):
+    """A reader or writer that the user names, and the suffix that its files need; None for what the file says."""
+
+    component: str | None = None
+    suffix: str | None = None
+
+
+def choice(kind: str, name: str | None, registry: Registry) -> Choice:
+    """The reader or writer of a name ("ply", "meshio") or of a suffix ("vtk", ".vtk").
+
+    Raises UsageError for neither.
+    """
+    if name is None:
+        return Choice()
+    suffix = f".{name.lstrip('.').lower()}"
+    for component in registry.components(kind):
+        if name == component.name:
+            return Choice(name, component.suffixes[0] if len(component.suffixes) == 1 else None)
+    for component in registry.components(kind):
+        if suffix in component.suffixes:
+            return Choice(component.name, suffix)
+    return Choice(registry.component(kind, name).name)
+
+
+def read(
+    path: Path,
+    registry: Registry,
+    format: str | None = None,
+    *,
+    options: Mapping[str, Any] | None = None,
+    degenerate: bool = False,
+) -> Polyhedron:
+    """The polyhedron of a file, or of the standard input for `-`; see `formats.read`.
+
+    format: a name of a reader or a suffix.
+    """
+    from orbiframe import formats
+
+    chosen = choice("reader", format, registry)
+    given: dict[str, Any] = {"format": chosen.component, "options": options, "degenerate": degenerate}
+    if path == STREAM:
+        _require_named(chosen, "input", "-i")
+        with _staged(f"stdin{chosen.suffix}", "stdin") as place:
+            _receive(place, formats.SIZE_LIMIT)
+            return formats.read(place, registry, **given)
+    if chosen.suffix in (None, path.suffix.lower()):
+        return formats.read(path, registry, **given)
+    formats.require_readable(path)
+    with _staged(f"{path.stem}{chosen.suffix}", str(path)) as place:
+        place.symlink_to(path.absolute())
+        return formats.read(place, registry, **given)
+
+
+def write(
+    path: Path,
+    polyhedron: Polyhedron,
+    registry: Registry,
+    format: str | None = None,
+    *,
+    options: Mapping[str, Any] | None = None,
+) -> None:
+    """Write a polyhedron to a file, or to the standard output for `-`; see `formats.write`.
+
+    format: a name of a writer or a suffix. What goes to the standard output is made whole first.
+    """
+    from orbiframe import formats
+
+    chosen = choice("writer", format, registry)
+    if path != STREAM and chosen.suffix in (None, path.suffix.lower()):
+        formats.write(path, polyhedron, registry, format=chosen.component, options=options)
+        return
+    _require_named(chosen, "output", "-o")
+    # Through a link the file behind it is written, as by any other program.
+    target = STREAM if path == STREAM else Path(os.path.realpath(path))
+    if path != STREAM:
+        formats.require_writable(target)
+    name = "stdout" if path == STREAM else str(path)
+    with _staged(f"{Path(name).stem}{chosen.suffix}", name, None if path == STREAM else target.parent) as place:
+        formats.write(place, polyhedron, registry, format=chosen.component, options=options)
+        _require_one_file(place, name)
+        _send(place, target)
+
+
+def _require_named(chosen: Choice, noun: str, option: str) -> None:
+    if chosen.suffix is None:
+        raise UsageError(
+            f"the format of the standard {noun} must be said: add {option} with a suffix, such as {option} ply"
+        )
+
+
+@contextmanager
+def _staged(file: str, name: str, beside: Path | None = None) -> Iterator[Path]:
+    """A place for a file in a folder of its own; errors name what the user knows instead of it."""
+    with tempfile.TemporaryDirectory(dir=beside, prefix=".orbiframe-") as folder:
+        place = Path(folder) / file
+        try:
+            yield place
+        except (FormatError, PluginError) as error:
+            raise type(error)(str(error).replace(str(place), name)) from error.__cause__
+
+
+def _receive(place: Path, limit: int) -> None:
+    with place.open("wb") as file:
+        while block := sys.stdin.buffer.read(_BLOCK):
+            file.write(block)
+            if file.tell() > limit:
+                raise FormatError(f"{place}: there are more bytes than the limit of {limit}")
+
+
+def _send(place: Path, path: Path) -> None:
+    if path != STREAM:
+        place.replace(path)
+        return
+    with place.open("rb") as file:
+        shutil.copyfileobj(file, sys.stdout.buffer)
+    sys.stdout.buffer.flush()
+
+
+def _require_one_file(place: Path, name: str) -> None:
+    companions = sorted(found.name for found in place.parent.iterdir() if found != place)
+    if companions:
+        raise FormatError(
+            f"{name}: this format makes further files ({', '.join(companions)}); name a file of its suffix"
+        )
