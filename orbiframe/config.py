@@ -51,6 +51,7 @@ OPEN_NAMES = ("auto", "mesh")
 STEPS = {
     "mesh": ("reader", "format", "auto"),
     "group": ("group", "method", "mesh"),
+    "marking": ("marker", "method", "tree-cotree"),
     "map": ("parametrizer", "method", "auto"),
     "basis": ("basis", "name", "gaussian"),
     "fitter": ("fitter", "name", "least-squares"),
@@ -60,10 +61,11 @@ TABLES = (*STEPS, "output")
 
 @dataclass(frozen=True, slots=True)
 class Config:
-    """A fit in words: one step for each of the tables mesh, group, map, basis and fitter, the output, plugin files.
+    """A fit in words: a step for each of the tables of `STEPS`, the output, plugin files.
 
-    mesh: the reader, "auto" by the file suffix; group: "mesh" takes the group from the mesh; map: "auto" takes the
-    parametrizer that fits the geometry. places: where each "table.key" was written, for error messages.
+    mesh: the reader, "auto" by the file suffix; group: "mesh" takes the group from the mesh; marking: cuts the mesh
+    open for a named group; map: "auto" takes the parametrizer that fits the geometry and the group; basis; fitter.
+    places: where each "table.key" was written, for error messages.
     """
 
     steps: Mapping[str, Step]
@@ -110,6 +112,11 @@ class Config:
     def group(self) -> Step:
         """The group."""
         return self.steps["group"]
+
+    @property
+    def marking(self) -> Step:
+        """The marker."""
+        return self.steps["marking"]
 
     @property
     def map(self) -> Step:

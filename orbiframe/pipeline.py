@@ -18,6 +18,7 @@ from orbiframe.config import Config
 from orbiframe.diagonals import triangulated
 from orbiframe.errors import FitError, MapError, TopologyError
 from orbiframe.geometry import Geometry
+from orbiframe.marked_group import MarkedGroup
 from orbiframe.options import options_of
 from orbiframe.polyhedron import Polyhedron
 from orbiframe.registry import Registry
@@ -32,6 +33,7 @@ Progress = Callable[[str, float | None], None]
 
 GEOMETRY = {1: "s2", 0: "e2", -1: "h2"}
 PARAMETRIZER = {"s2": "sphere", "e2": "harmonic", "h2": "harmonic"}
+NAMED_PARAMETRIZER = {"s2": "sphere", "e2": "equivariant", "h2": "equivariant"}
 
 _VERTICES_PER_FUNCTION = 6
 _LEAST_VERTICES = 3000
@@ -124,7 +126,7 @@ def _of_size(
     longest = _longest_edge(triangles, size)
     if known is None or longest not in known:
         refinement = stages("refinement", bisected, triangles, longest)
-        triangulation = stages("map", _mapped, refinement.polyhedron, surface_type, config, registry)
+        triangulation = _mapped(refinement.polyhedron, surface_type, config, registry, stages)
         if known is not None:
             known[longest] = (refinement, triangulation)
     else:
@@ -171,20 +173,30 @@ def _longest_edge(triangles: Polyhedron, size: int) -> float:
     return edge_length_for(triangles, max(_LEAST_VERTICES, _VERTICES_PER_FUNCTION * size))
 
 
-def _mapped(mesh: Polyhedron, surface_type: SurfaceType, config: Config, registry: Registry) -> Triangulation:
+def _mapped(
+    mesh: Polyhedron, surface_type: SurfaceType, config: Config, registry: Registry, stages: _Stages
+) -> Triangulation:
     """The map to X/H, verified; the sign of the Euler characteristic chooses the geometry."""
     geometry: Geometry = registry.load("geometry", GEOMETRY[int(np.sign(surface_type.euler_characteristic))])()
-    group = None
-    if not config.group.open:
-        raise MapError("the map takes its group from the mesh; remove group.method or set it to 'mesh'")
-    name = PARAMETRIZER[geometry.name] if config.map.open else config.map.name
-    triangulation: Triangulation = config.component("map", registry, name)(mesh, geometry, group)
+    group = None if config.group.open else _named_group(mesh, geometry, config, registry, stages)
+    chosen = PARAMETRIZER if group is None else NAMED_PARAMETRIZER
+    name = chosen[geometry.name] if config.map.open else config.map.name
+    triangulation: Triangulation = stages("map", config.component("map", registry, name), mesh, geometry, group)
     if triangulation.not_positive:
         raise MapError(
             f"{triangulation.not_positive} of {mesh.face_count} triangles are folded in the map of '{name}'; "
-            "use map.method = 'auto'"
+            "use map.method = 'auto'" + ("" if group is None else " or group.method = 'mesh'")
         )
     return triangulation
+
+
+def _named_group(
+    mesh: Polyhedron, geometry: Geometry, config: Config, registry: Registry, stages: _Stages
+) -> MarkedGroup:
+    """The mesh cut open to a disc, and the group that the configuration names with the word of its boundary."""
+    marking = stages("marking", config.component("marking", registry), mesh)
+    group = stages("group", config.component("group", registry), geometry, marking.word)
+    return MarkedGroup(group, marking, config.group.name)
 
 
 def _deviation(surface: OrbifoldSurface, samples: Samples) -> Deviation:

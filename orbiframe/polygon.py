@@ -65,7 +65,7 @@ class FundamentalPolygon:
     def interior_angles(self) -> Floats:
         """Interior angle at every vertex in (0, 2 pi), (n,)."""
         after, before = self.directions
-        return np.mod(before - after, 2 * np.pi).astype(np.float64)
+        return np.asarray(np.mod(before - after, 2 * np.pi), dtype=np.float64)
 
     @cached_property
     def directions(self) -> tuple[NDArray[np.longdouble], NDArray[np.longdouble]]:

@@ -61,9 +61,9 @@ class Spin:
         product = self.a * a - self.curvature * self.b * b.conj(), self.a * b + self.b * a.conj()
         return Spin(self.curvature, *product, self.reverses ^ other.reverses)
 
-    def __getitem__(self, index: object) -> Spin:
-        """Some of the isometries, by any index of arrays."""
-        return Spin(self.curvature, self.a[index], self.b[index], self.reverses[index])  # type: ignore[index]
+    def __getitem__(self, index: NDArray[np.intp] | NDArray[np.bool_]) -> Spin:
+        """Some of the isometries."""
+        return Spin(self.curvature, self.a[index], self.b[index], self.reverses[index])
 
     @property
     def inverse(self) -> Spin:

@@ -24,6 +24,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("-o", "--output", metavar="OUT", type=Path, required=True, help="the smooth surface as a fine triangle mesh")
     add("--config", metavar="FILE.toml", type=Path, help="components and options of the steps")
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=200")
+    add("--group", metavar="NAME", help="a named group, such as regular-polygon; else that of the mesh (group.method)")
+    add("--map", metavar="NAME", help="the map to X/H, such as equivariant (map.method)")
     size = parser.add_mutually_exclusive_group().add_argument
     size("--size", metavar="N", type=int, help="number of basis functions (basis.size)")
     size("--tolerance", metavar="T", type=float, help="largest rms error, of the box's diagonal (output.tolerance)")
@@ -69,7 +71,13 @@ def _repaired(args: argparse.Namespace, config: Config, registry: Registry) -> P
 
 def overrides(args: argparse.Namespace) -> list[str]:
     """The options of the command line as TABLE.KEY=VALUE, those with a name of their own last."""
-    named = {"basis.size": args.size, "output.tolerance": args.tolerance, "output.refine": args.refine}
+    named = {
+        "group.method": args.group,
+        "map.method": args.map,
+        "basis.size": args.size,
+        "output.tolerance": args.tolerance,
+        "output.refine": args.refine,
+    }
     return [*args.set, *(f"{key}={value}" for key, value in named.items() if value is not None)]
 
 

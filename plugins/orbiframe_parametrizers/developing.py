@@ -39,8 +39,19 @@ def developed(
     patches in the same homotopy class share one, which is then projected onto the relations round the triangles. So
     no number ever leaves the neighbourhood of the origin, at any genus.
     """
-    outgoing, incoming, sense = _edge_directions(mesh, angles)
-    steps = _edge_isometries(mesh, geometry, lengths, outgoing, incoming, sense)
+    steps = edge_isometries(mesh, geometry, lengths, angles)
+    return in_patches(mesh, geometry, lengths, steps, surface=surface, patch_radius=patch_radius)
+
+
+def in_patches(
+    mesh: Polyhedron, geometry: Geometry, lengths: Floats, steps: Floats, *, surface: SurfaceType, patch_radius: float
+) -> Triangulation:
+    """The triangulation of X/H from frames at the vertices, of which only the steps between neighbours are known.
+
+    lengths: (H,) in X; steps: (H, 3, 3), for a halfedge from i to j the isometry from the frame at j to the frame at i,
+    exactly the inverse of that of its twin (the same, if the twin runs the same way). Each vertex is the origin of its
+    frame. See `developed` for the rest.
+    """
     patch, frames = _patch_frames(mesh, geometry, lengths, steps, patch_radius)
     labels = frames[mesh.tail] @ steps @ geometry.inverse(frames[mesh.head])
     transition, tail, head, isometry = _classes(mesh, geometry, patch, labels)
@@ -87,14 +98,15 @@ def _edge_directions(mesh: Polyhedron, angles: Floats) -> tuple[Floats, Floats, 
     return first, last[mesh.next], sense
 
 
-def _edge_isometries(
-    mesh: Polyhedron, geometry: Geometry, lengths: Floats, outgoing: Floats, incoming: Floats, sense: Bools
-) -> Floats:
+def edge_isometries(mesh: Polyhedron, geometry: Geometry, lengths: Floats, angles: Floats) -> Floats:
     """For every halfedge from i to j the isometry from the frame at j to the frame at i, (H, 3, 3).
+
+    lengths: (H,), of the edges; angles: (H,), of the corners, 2 pi in all round every vertex.
 
     Turn the direction of the edge at j to the x1-axis, reflect in that axis if the two frames have opposite senses,
     turn by pi, move by the length, turn the axis into the direction of the edge at i.
     """
+    outgoing, incoming, sense = _edge_directions(mesh, angles)
     flipped = sense != sense[mesh.next]
     mirror = np.where(flipped[:, None, None], np.diag([1.0, 1.0, -1.0]), np.eye(3))
     there = geometry.rotation(np.pi) @ mirror @ geometry.rotation(-incoming)

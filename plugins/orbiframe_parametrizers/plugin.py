@@ -7,13 +7,19 @@ from orbiframe.plugin import Component, hookimpl
 
 @hookimpl
 def orbiframe_components() -> list[Component]:
-    """The harmonic map for chi <= 0 and the packed sphere for chi > 0."""
+    """Harmonic maps for chi <= 0, to the group of the mesh or to a named one, and the packed sphere for chi > 0."""
     return [
         Component(
             "parametrizer",
             "harmonic",
             "orbiframe_parametrizers.harmonic:harmonic",
-            "chi <= 0: group from a circle packing, harmonic map in the atlas",
+            "chi <= 0: group from a conformal metric or a circle packing, harmonic map in the atlas",
+        ),
+        Component(
+            "parametrizer",
+            "equivariant",
+            "orbiframe_parametrizers.equivariant:equivariant",
+            "chi <= 0: harmonic map to a named group, from the centre of its cell",
         ),
         Component(
             "parametrizer",

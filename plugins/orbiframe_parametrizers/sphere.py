@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import Atlas, Geometry, MapError, Orbifold, Polyhedron, Triangulation, surface_type
+from orbiframe import Atlas, Geometry, MapError, MarkedGroup, Orbifold, Polyhedron, Triangulation, surface_type
 from orbiframe_parametrizers.circle_packing import packed
 from orbiframe_parametrizers.double_cover import DoubleCover, double_cover
 from orbiframe_parametrizers.edge_weights import WEIGHTS
@@ -25,7 +25,7 @@ _EQUAL = 1e-9
 def sphere(
     polyhedron: Polyhedron,
     geometry: Geometry,
-    group: object | None = None,
+    group: MarkedGroup | None = None,
     *,
     weights: Literal["auto", "cotangent", "mean-value", "packing"] = "auto",
 ) -> Triangulation:
@@ -35,16 +35,17 @@ def sphere(
     every triangulation), projected to the sphere and centred by a Moebius map. weights: "cotangent" and "mean-value"
     replace the circle centres by a harmonic map to the plane with one pole, which follows the metric of the mesh;
     "auto" takes the one of the three that has no fold and the smallest median angle distortion. The faces of an
-    orientable surface must be oriented alike. Raises MapError if they are not, if the surface does not live on the
-    geometry, if a group is named, or if no map is an embedding.
+    orientable surface must be oriented alike. The group is the trivial one or the antipodal map, also where it has a
+    name. Raises MapError if faces are not oriented alike, if the surface or the named group does not live on the
+    geometry, or if no map is an embedding.
     """
     surface = surface_type(polyhedron)
     if surface.euler_characteristic <= 0 or geometry.curvature != 1:
         raise MapError(f"a surface with chi = {surface.euler_characteristic} does not live on {geometry.name}")
     if surface.orientable and polyhedron.same.any():
         raise MapError("the faces of the mesh are not oriented alike; orient them before they are mapped to the sphere")
-    if group is not None:
-        raise MapError("the map to the sphere takes no group; leave it out (group.method = 'mesh')")
+    if group is not None and group.group.geometry.curvature != 1:
+        raise MapError(f"{group.source} does not live on {geometry.name}; set group.method = 'finite'")
     target = _Sphere(polyhedron, geometry) if surface.orientable else _ProjectivePlane(polyhedron, geometry)
     names = ["cotangent", "mean-value", "packing"] if weights == "auto" else [weights]
     made = [target.mapped(name) for name in names]
@@ -54,7 +55,8 @@ def sphere(
             "the map to the sphere has folded triangles: parts of the mesh are too long and thin for double precision; "
             "shorten them, or refine the mesh (map.vertices)"
         )
-    return min(embedded, key=lambda result: float(np.median(result.angle_distortion)))
+    best = min(embedded, key=lambda result: float(np.median(result.angle_distortion)))
+    return best if group is None else replace(best, group=group.source)
 
 
 @dataclass(frozen=True, eq=False)

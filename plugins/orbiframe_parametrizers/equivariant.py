@@ -1,0 +1,142 @@
+"""Equivariant: the harmonic map of a surface with chi <= 0 to X/H for a named group H."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe import (
+    Atlas,
+    Geometry,
+    MapError,
+    MarkedGroup,
+    Orbifold,
+    Polyhedron,
+    Spin,
+    SurfaceType,
+    Triangulation,
+    surface_type,
+)
+from orbiframe_parametrizers.developing import in_patches
+from orbiframe_parametrizers.edge_weights import WEIGHTS
+from orbiframe_parametrizers.embedding import embedded
+from orbiframe_parametrizers.unfolding import unfolded
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+_RELATIONS = 1e-12
+_AREA = 1e-9
+
+
+def equivariant(
+    polyhedron: Polyhedron,
+    geometry: Geometry,
+    group: MarkedGroup | None = None,
+    *,
+    weights: Literal["auto", "cotangent", "mixed", "mean-value", "uniform"] = "auto",
+) -> Triangulation:
+    """The harmonic map to the surface X/H of a named group, in the homotopy class of the marking.
+
+    All vertices start at the centre of the cell of H, and Newton's method unfolds them (section 3.4, steps 1 to 3).
+    The frames of neighbours in this map give patches near the origin, in which the map is harmonic once more, with all
+    digits. polyhedron: a closed connected triangle mesh with chi <= 0, coherently oriented if orientable; geometry: of
+    the group; group: a marking of this mesh and a group with its word. weights: as for the map `harmonic`. Raises
+    MapError if no group is named, if the marking is of another mesh, if the surface does not live on the geometry, or
+    if no map without a fold and with all relations is found.
+    """
+    surface = surface_type(polyhedron)
+    _require(polyhedron, geometry, group, surface)
+    assert group is not None
+    try:
+        result = embedded(_layout(polyhedron, geometry, group, surface), weights)
+    except MapError as error:
+        raise MapError(f"{_refused(group)}: {error}") from error
+    if not (result.relation_defect < _RELATIONS and _area_defect(result, group) < _AREA):
+        raise MapError(
+            f"{_refused(group)}: its relations hold to {result.relation_defect:.0e} and its area to "
+            f"{_area_defect(result, group):.0e}"
+        )
+    return result
+
+
+def _refused(group: MarkedGroup) -> str:
+    return (
+        f"the map to the group '{group.name}' with {len(group.group.word)} sides fails; let the group come from the "
+        "mesh (group.method = 'mesh')"
+    )
+
+
+def _area_defect(result: Triangulation, group: MarkedGroup) -> float:
+    return float(abs(result.areas.sum() / group.group.area - 1.0))
+
+
+def _require(mesh: Polyhedron, geometry: Geometry, group: MarkedGroup | None, surface: SurfaceType) -> None:
+    chi = surface.euler_characteristic
+    if group is None:
+        raise MapError("this map needs a named group; set group.method = 'regular-polygon' or map.method = 'harmonic'")
+    if chi > 0 or np.sign(chi) != geometry.curvature or group.group.geometry.curvature != geometry.curvature:
+        raise MapError(f"a surface with chi = {chi} and {group.source} do not both live on {geometry.name}")
+    if len(group.marking.position) != len(mesh.tail):
+        raise MapError(
+            f"the marking has {len(group.marking.position)} corners, the mesh {len(mesh.tail)}; mark this mesh"
+        )
+
+
+def _layout(mesh: Polyhedron, geometry: Geometry, group: MarkedGroup, surface: SurfaceType) -> Triangulation:
+    """The map in patches, near its minimum."""
+    lift = _corner_lifts(mesh, group)
+    points = _unfolded(mesh, geometry, lift, surface)
+    steps = _steps(mesh, geometry, lift, points)
+    lengths = geometry.distance(geometry.origin, steps[..., 0])
+    if geometry.curvature == 0:
+        lengths *= np.sqrt(4 * np.pi / group.group.area)
+    layout = in_patches(mesh, geometry, lengths, steps, surface=surface, patch_radius=1.0)
+    return replace(layout, group=group.source)
+
+
+def _corner_lifts(mesh: Polyhedron, group: MarkedGroup) -> Spin:
+    """For every corner (H,) the deck transformation from the lift of its vertex to the corner of the lifted face.
+
+    Faces are lifted into the cell. The lift of a vertex is that in one of its corners, at position p; at position c the
+    vertex is seen by g_c g_p^-1, the identity where p and c are the same.
+    """
+    position = group.marking.position
+    _, first = np.unique(mesh.tail, return_index=True)
+    own = position[first][mesh.tail]
+    pairs, which = np.unique(np.stack([position, own], axis=1), axis=0, return_inverse=True)
+    element = group.elements
+    lifts = element[pairs[:, 0]] @ element[pairs[:, 1]].inverse
+    still = pairs[:, 0] == pairs[:, 1]
+    lifts = Spin(lifts.curvature, np.where(still, 1, lifts.a), np.where(still, 0, lifts.b), lifts.reverses & ~still)
+    return lifts[which.ravel()]
+
+
+def _unfolded(mesh: Polyhedron, geometry: Geometry, lift: Spin, surface: SurfaceType) -> Floats:
+    """The points (V, 3) of the harmonic map with positive weights, in the frame of the cell, to some digits."""
+    isometry = (lift.inverse @ lift[mesh.next]).matrix
+    ends = np.zeros(len(isometry), dtype=np.intp)
+    atlas = Atlas(geometry, np.array([np.inf]), ends, ends, ends, isometry)
+    orbifold = Orbifold(atlas, surface.euler_characteristic, surface.orientable, 1.0)
+    start = np.tile(geometry.origin, (len(mesh.vertices), 1))
+    weights = WEIGHTS["mean-value"](mesh)
+    if not (np.isfinite(weights).all() and (weights > 0).all()):
+        weights = WEIGHTS["uniform"](mesh)
+    patch = np.zeros(len(mesh.vertices), dtype=np.intp)
+    return unfolded(Triangulation(orbifold, mesh, patch, start, np.arange(len(mesh.tail))), weights)
+
+
+def _steps(mesh: Polyhedron, geometry: Geometry, lift: Spin, points: Floats) -> Floats:
+    """For every halfedge from i to j the isometry from the frame at j to the frame at i, (H, 3, 3).
+
+    The frame at a vertex is carried from the origin to its point along a geodesic; no step is longer than its edge.
+    """
+    frame = lift @ Spin.translation(geometry.curvature, points)[mesh.tail]
+    steps = (frame.inverse @ frame[mesh.next]).matrix
+    other = np.flatnonzero(~mesh.representative)
+    twin, same = mesh.twin[other], mesh.same[other, None, None]
+    steps[other] = np.where(same, steps[twin], geometry.inverse(steps[twin]))
+    return steps
