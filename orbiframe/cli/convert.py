@@ -28,7 +28,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="an option of the reader or the writer")
     add("--strict", action="store_true", help="an error instead of a warning for what the format cannot hold")
     add_repairs(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, wrong_use=parser.error)
 
 
 def run(args: argparse.Namespace, registry: Registry) -> int:
@@ -45,9 +45,9 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
 
 def _pair(args: argparse.Namespace) -> tuple[Path, Path]:
     if args.into is not None:
-        raise UsageError("--into needs --to with the suffix of the files to make, such as --to ply")
+        args.wrong_use("--into needs --to with the suffix of the files to make, such as --to ply")
     if len(args.files) != 2:
-        raise UsageError(f"{len(args.files)} files; give IN and OUT, or --to with a suffix for any number of meshes")
+        args.wrong_use("give IN and OUT, or --to with a suffix for any number of meshes")
     return args.files[0], args.files[1]
 
 
