@@ -13,7 +13,7 @@ from orbiframe_polygons.powers import powers_of_ten
 Bytes = NDArray[np.uint8]
 Floats = NDArray[np.float64]
 
-NUMBER = re.compile(rb"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+NUMBER = re.compile(rb"[+-]?(\d++(\.\d*+)?|\.\d++)([eE][+-]?\d++)?")
 # From so many bytes on, compiled loops gain more time than the import of the compiler takes.
 LARGE = 2**22
 

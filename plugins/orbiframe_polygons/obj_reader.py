@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import NoReturn
@@ -22,7 +23,7 @@ Bools = NDArray[np.bool_]
 IGNORED = frozenset(
     b"vt vp o g s mg mtllib usemtl usemap maplib l p bevel c_interp d_interp lod shadow_obj trace_obj".split()
 )
-CORNER = re.compile(rb"[+-]?\d+(/[+-]?\d*(/([+-]?\d+)?)?)?")
+CORNER = re.compile(rb"[+-]?\d++(/[+-]?\d*+(/([+-]?\d++)?)?)?")
 BLANK, SLASH = 32, 47
 
 
@@ -72,9 +73,12 @@ def _vertices(text: Text) -> tuple[Floats, Floats | None]:
         text.refuse(int(wrong[0]), f"found {text.words[wrong[0]]} numbers, but a vertex has 3, or 6 with a colour")
     values = text.numbers()
     vertices = values[text.first[:, None] + np.arange(3)]
-    if not len(text) or (text.words != text.words[0]).any() or text.words[0] < 6:
+    coloured = text.words >= 6
+    if not coloured.all():
+        if coloured.any():
+            warnings.warn(f"{text.path}: only some vertices have colours; all are left out", stacklevel=2)
         return vertices, None
-    colors = colours(values.reshape(len(text), -1)[:, 3:])
+    colors = colours(values[(text.first + text.words)[:, None] - np.arange(3, 0, -1)]) if len(text) else None
     require_colours(colors, text.path)
     return vertices, colors
 

@@ -103,9 +103,17 @@ def _kind(text: Text) -> tuple[Kind, Text]:
 
 def _by_lines(kind: Kind, text: Text) -> Parts:
     vertices, faces = _counts(text)
-    _require_counts(text, vertices, faces)
+    end = 1 + vertices + faces
+    if len(text) < end:
+        raise FormatError(
+            f"{text.path}, line {text.number[0]}: {vertices} vertices and {faces} faces are declared, but "
+            f"{len(text) - 1} lines follow; is the file cut short?"
+        )
     points = _vertices(text.lines(1, 1 + vertices), kind)
-    return Parts(points, *_faces(text.lines(1 + vertices, 1 + vertices + faces), vertices))
+    parts = Parts(points, *_faces(text.lines(1 + vertices, end), vertices))
+    if len(text) > end:
+        _require_faces_alone(text.lines(end, len(text)), vertices, faces)
+    return parts
 
 
 def _counts(text: Text) -> tuple[int, int]:
@@ -115,27 +123,14 @@ def _counts(text: Text) -> tuple[int, int]:
     return int(words[0]), int(words[1])
 
 
-def _require_counts(text: Text, vertices: int, faces: int) -> None:
-    present = len(text) - 1
-    declared = vertices + faces
-    if present < declared:
-        raise FormatError(
-            f"{text.path}, line {text.number[0]}: {vertices} vertices and {faces} faces are declared, but {present} "
-            "lines follow; is the file cut short?"
-        )
-    if present > declared:
-        _require_faces_alone(text, vertices, faces)
-
-
 def _require_faces_alone(text: Text, vertices: int, faces: int) -> None:
     """Faces beyond the declared ones are left out with a warning, as other readers do; anything else is refused."""
-    row = 1 + vertices + faces
     try:
-        sizes, _, _ = _faces(text.lines(row, len(text)), vertices)
+        sizes, _, _ = _faces(text, vertices)
     except FormatError:
-        text.refuse(row, "the file goes on after its last face; do the counts fit the lines?")
+        text.refuse(0, "the file goes on after its last face; do the counts fit the lines?")
     found = "1 face line" if len(sizes) == 1 else f"{len(sizes)} face lines"
-    place = f"{text.path}, line {text.number[row]}"
+    place = f"{text.path}, line {text.number[0]}"
     warnings.warn(f"{place}: {found} more than the {faces} declared; left out", stacklevel=2)
 
 

@@ -82,7 +82,8 @@ def tables(path: Path, data: bytes, header: Header) -> Iterator[Table]:
 
 
 def _from_text(path: Path, data: bytes, header: Header) -> Iterator[Table]:
-    text = table(path, plain(path, data[header.size :]), line=header.lines + 1)
+    line = header.lines + 1
+    text = table(path, plain(path, data[header.size :], line=line), line=line)
     try:
         return iter(list(_by_lines(text, header)))
     except FormatError:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import re
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +21,7 @@ Bools = NDArray[np.bool_]
 HEADER_SIZE, RECORD_SIZE = 84, 50
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 FACET = [b"facet", b"outer", b"vertex", b"vertex", b"vertex", b"endloop", b"endfacet"]
+BREAK = re.compile(rb"(?i) (?=(?:solid|facet|outer|vertex|endloop|endfacet|endsolid)(?: |$))")
 FACET_WORDS = [5, 2, 4, 4, 4, 1, 1]
 
 
@@ -52,7 +55,20 @@ def _binary(path: Path, data: bytes) -> Floats:
 
 def _ascii(path: Path, data: bytes) -> Floats:
     _require_text(path, data)
-    text = table(path, plain(path, data))
+    content = plain(path, data)
+    try:
+        return _corners(table(path, content))
+    except FormatError:
+        # Words may be broken into lines anyhow; where they do not even then make facets, the first reason stands.
+        if b"endsolid" not in content.rstrip().rpartition(b"\n")[2].lower():
+            raise
+        loose = BREAK.sub(b"\n", b" ".join(content.split()))
+        with contextlib.suppress(FormatError):
+            return _corners(table(path, loose))
+        raise
+
+
+def _corners(text: Text) -> Floats:
     keyword = _keywords(text)
     solid, endsolid = (np.isin(keyword, _code(word)) for word in (b"solid", b"endsolid"))
     _require_solids(text, solid, endsolid)

@@ -130,12 +130,15 @@ def read_text(path: Path, *, continued: bool = False) -> Text:
     return table(path, data)
 
 
-def plain(path: Path, data: bytes) -> bytes:
-    """The bytes of a text without byte order mark, and with LF at the end of each line."""
+def plain(path: Path, data: bytes, *, line: int = 1) -> bytes:
+    """The bytes of a text without byte order mark, and with LF at the end of each line.
+
+    line: the number of the first line. Raises FormatError for UTF-16 and for zero bytes.
+    """
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise FormatError(f"{path}: the text is UTF-16; save it as UTF-8")
     if b"\0" in data:
-        line = data[: data.index(b"\0")].count(b"\n") + 1
+        line += data[: data.index(b"\0")].count(b"\n")
         raise FormatError(f"{path}, line {line}: found a zero byte, but a text file is required; is the file binary?")
     data = data.removeprefix(b"\xef\xbb\xbf").replace(b"\v", b" ")
     return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
@@ -144,8 +147,18 @@ def plain(path: Path, data: bytes) -> bytes:
 def table(path: Path, data: bytes, *, line: int = 1) -> Text:
     """The lines of a text that are not blank; line: the number of the first line."""
     codes = np.frombuffer(data, dtype=np.uint8)
+    _require_printable(path, codes, line)
     begin, end, number, words = (_found_compiled if len(data) >= LARGE else _found)(codes)
     return Text(path, codes, begin, end, number + line, words)
+
+
+def _require_printable(path: Path, codes: Bytes, line: int) -> None:
+    # Unsigned bytes: those below the blank, but for the five that are blanks themselves, from tabulator to return.
+    wrong = (codes < BLANK) & (codes - np.uint8(9) > 4)
+    if wrong.any():
+        at = int(wrong.argmax())
+        line += int(np.isin(codes[:at], (NEWLINE, CONTINUED)).sum())
+        raise FormatError(f"{path}, line {line}: found the control byte {codes[at]}, but a text file is required")
 
 
 def _found(codes: Bytes) -> tuple[Ints, Ints, Ints, Ints]:

@@ -7,7 +7,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from corpus.bad_files import Case, Mesh, Refused, cases
+from corpus.bad_files import Mesh, Refused, cases
 
 from orbiframe import FormatError, Polyhedron, formats
 from orbiframe.registry import Registry

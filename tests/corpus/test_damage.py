@@ -1,0 +1,87 @@
+"""Valid files with bytes and lines changed at random: a polyhedron that passes the gate, or FormatError; nothing else."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+from corpus import bad_files
+from hypothesis import HealthCheck, given, settings, strategies as st
+
+from orbiframe import FormatError, formats
+from orbiframe.registry import Registry
+
+REGISTRY = Registry.discover()
+VALID = {
+    "colours.off": b"COFF\n4 4 6\n"
+    + bad_files.POINT_LINES.replace("\n", " 1 0 0\n").encode()
+    + bad_files.FACE_LINES.encode(),
+    "plain.off": bad_files.OFF.encode(),
+    "normals.obj": b"vn 0 0 1\n" + bad_files.V.encode() + b"f 1//1 3//-1 2//1\nf 1 2 4 \\\n3\nf -1 -2 -3\n",
+    "plain.obj": bad_files.OBJ.encode(),
+    "text.ply": bad_files.PLY.encode(),
+    "little.ply": bad_files.packed("<", "little", faces=[[0, 2, 1], [0, 1, 2, 3], [1, 2, 3], [2, 0, 3]]),
+    "big.ply": bad_files.packed(">", "big"),
+    "text.stl": bad_files.STL.encode(),
+    "binary.stl": bad_files.records(bad_files.FACETS),
+}
+# What is worth putting in: ends of lines, signs, numbers that are none, and bytes of any kind.
+PIECES = st.one_of(
+    st.sampled_from(
+        [
+            b"\n",
+            b"\r",
+            b"\r\n",
+            b" ",
+            b"-",
+            b"/",
+            b"#",
+            b"\\\n",
+            b"nan",
+            b"1e999",
+            b"1000000000000",
+            b"0",
+            b"\0",
+            b"\x80",
+            b"\xff\xff\xff\xff",
+        ]
+    ),
+    st.binary(min_size=1, max_size=4),
+)
+
+
+@st.composite
+def damaged(draw, content):
+    for _ in range(draw(st.integers(1, 4))):
+        first = draw(st.integers(0, len(content)))
+        last = min(len(content), first + draw(st.sampled_from([0, 1, 1, 2, 4, 13, 50])))
+        what = draw(st.sampled_from(["replace", "delete", "repeat", "move a line", "drop a line"]))
+        if what.endswith("line"):
+            lines = content.splitlines(keepends=True)
+            line = lines.pop(draw(st.integers(0, len(lines) - 1))) if lines else b""
+            if what == "move a line":
+                lines.insert(draw(st.integers(0, len(lines))), line)
+            content = b"".join(lines)
+        else:
+            middle = {"replace": draw(PIECES), "delete": b"", "repeat": content[first:last] * 2}[what]
+            content = content[:first] + middle + content[last:]
+    return content
+
+
+@pytest.mark.parametrize("name", VALID)
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.data())
+def test_a_damaged_file_is_read_or_refused_and_nothing_else(tmp_path, name, data):
+    path = tmp_path / name
+    path.write_bytes(data.draw(damaged(VALID[name])))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        try:
+            found = formats.read(path, REGISTRY)
+        except FormatError as error:
+            assert name in str(error)
+            assert "reading failed" not in str(error), "the reader itself did not see it"
+            return
+    formats.require_sound(found, path)
+    assert np.isfinite(found.vertices).all()
