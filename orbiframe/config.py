@@ -51,7 +51,7 @@ OPEN_NAMES = ("auto", "mesh")
 STEPS = {
     "mesh": ("reader", "format", "auto"),
     "group": ("group", "method", "mesh"),
-    "marking": ("marker", "method", "tree-cotree"),
+    "marking": ("marker", "method", "auto"),
     "map": ("parametrizer", "method", "auto"),
     "basis": ("basis", "name", "gaussian"),
     "fitter": ("fitter", "name", "least-squares"),

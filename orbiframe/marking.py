@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components
 
 from orbiframe.errors import TopologyError
 from orbiframe.polyhedron import Polyhedron
-from orbiframe.word import Word
+from orbiframe.word import Word, inverse_letters
 
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
@@ -47,16 +47,22 @@ class Marking:
         return self.position, self.position[self.polyhedron.next]
 
     def subword(self, halfedge: int) -> tuple[int, ...]:
-        """The letters that a halfedge carries from its tail to its head."""
+        """The letters that a halfedge carries from its tail to its head, along the shorter way round the polygon."""
         start, end = (int(place[halfedge]) for place in self.transitions)
-        turned = self.word.letters[start:] + self.word.letters[:start]
-        return turned[: (end - start) % len(self.word)]
+        forward = _between(self.word.letters, start, end)
+        backward = _between(self.word.letters, end, start)
+        return forward if len(forward) <= len(backward) or start == end else inverse_letters(backward)
 
     @property
     def loop_length(self) -> float:
         """The length in space of all loops together."""
         points = self.polyhedron.vertices
         return float(sum(np.linalg.norm(np.diff(points[loop], axis=0), axis=1).sum() for loop in self.loops))
+
+
+def _between(letters: tuple[int, ...], start: int, end: int) -> tuple[int, ...]:
+    """The letters of a cyclic word from corner `start` to corner `end`."""
+    return (letters[start:] + letters[:start])[: (end - start) % len(letters)]
 
 
 def marking_along(polyhedron: Polyhedron, base: int, tree: Bools, cotree: Bools) -> Marking:

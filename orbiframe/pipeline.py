@@ -33,6 +33,7 @@ Progress = Callable[[str, float | None], None]
 
 GEOMETRY = {1: "s2", 0: "e2", -1: "h2"}
 PARAMETRIZER = {"s2": "sphere", "e2": "harmonic", "h2": "harmonic"}
+MARKER = "tree-cotree"
 NAMED_PARAMETRIZER = {"s2": "sphere", "e2": "equivariant", "h2": "equivariant"}
 
 _VERTICES_PER_FUNCTION = 6
@@ -194,7 +195,8 @@ def _named_group(
     mesh: Polyhedron, geometry: Geometry, config: Config, registry: Registry, stages: _Stages
 ) -> MarkedGroup:
     """The mesh cut open to a disc, and the group that the configuration names with the word of its boundary."""
-    marking = stages("marking", config.component("marking", registry), mesh)
+    name = MARKER if config.marking.open else config.marking.name
+    marking = stages("marking", config.component("marking", registry, name), mesh)
     group = stages("group", config.component("group", registry), geometry, marking.word)
     return MarkedGroup(group, marking, config.group.name)
 

@@ -1,4 +1,4 @@
-"""The laws of a map from a triangle mesh to X/H, with the group found from the mesh."""
+"""The laws of a map from a triangle mesh to X/H, with the group found from the mesh or named."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from orbiframe.atlas import Atlas
 from orbiframe.diagonals import triangulated
 from orbiframe.errors import MapError
 from orbiframe.geometry import Geometry
+from orbiframe.marked_group import MarkedGroup
 from orbiframe.orbifold import Orbifold
 from orbiframe.polyhedron import Polyhedron
 from orbiframe.refinement import refine
@@ -23,7 +24,7 @@ from orbiframe.topology import surface_type
 from orbiframe.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
-Component = Callable[[Polyhedron, Geometry, None], Triangulation]
+Component = Callable[[Polyhedron, Geometry, MarkedGroup | None], Triangulation]
 
 DENSITY = 3
 _GEOMETRY = {1: "s2", 0: "e2", -1: "h2"}
@@ -94,7 +95,9 @@ def order_of_faces_does_not_matter(component: Component, lab: Lab) -> None:
     for case in _cases(component, lab):
         order, shift = lab.rng.permutation(case.mesh.face_count), lab.rng.integers(3, size=case.mesh.face_count)
         corners = 3 * order[:, None] + (np.arange(3) + shift[:, None]) % 3
-        there = component(_reordered(case.mesh, corners), case.atlas.geometry, None)
+        mesh = _reordered(case.mesh, corners)
+        group = None if case.group is None else _remarked(case.group, mesh, corners)
+        there = component(mesh, case.atlas.geometry, group)
         error = edge_lengths(there) - edge_lengths(case.result)[corners.ravel()]
         _at_most(case, "a length in X changes by", error, 1e-6)
 
@@ -158,6 +161,7 @@ MUTANTS: dict[str, Callable[[Component], Component]] = {
 class _Case:
     name: str
     mesh: Polyhedron
+    group: MarkedGroup | None
     result: Triangulation
 
     @property
@@ -173,19 +177,42 @@ def edge_lengths(result: Triangulation) -> Floats:
 
 
 def _cases(component: Component, lab: Lab) -> Iterator[_Case]:
-    """The maps of the reference polyhedra; the component may decline a surface that is not for it with MapError."""
+    """The maps of the reference polyhedra; the component may decline a surface that is not for it with MapError.
+
+    It is asked for a map to the group of the mesh, and where it declines, to that of the regular polygon.
+    """
     taken, refusals = 0, []
     for name, polyhedron in lab.polyhedra.items():
         mesh = refine(triangulated(polyhedron), DENSITY).polyhedron
         geometry = _geometry(_GEOMETRY[int(np.sign(surface_type(mesh).euler_characteristic))])
-        try:
-            result = component(mesh, geometry, None)
-        except MapError as error:
-            refusals.append(f"{name}: {error}")
-            continue
-        taken += 1
-        yield _Case(name, mesh, result)
+        for make in (_no_group, _regular_group):
+            group = make(mesh, geometry)
+            try:
+                result = component(mesh, geometry, group)
+            except MapError as error:
+                refusals.append(f"{name}: {error}")
+                continue
+            taken += 1
+            yield _Case(name, mesh, group, result)
+            break
     assert taken, "the component takes none of the reference polyhedra: " + "; ".join(refusals)
+
+
+def _no_group(_mesh: Polyhedron, _geometry: Geometry) -> None: ...
+
+
+def _regular_group(mesh: Polyhedron, geometry: Geometry) -> MarkedGroup:
+    registry = Registry.discover(only=["groups", "markers"])
+    marking = registry.load("marker", "tree-cotree")(mesh)
+    return MarkedGroup(registry.load("group", "regular-polygon")(geometry, marking.word), marking, "regular-polygon")
+
+
+def _remarked(group: MarkedGroup, mesh: Polyhedron, corners: NDArray[np.intp]) -> MarkedGroup:
+    """The same group and marking on the mesh with its corners (F, 3) in another order."""
+    old, marking = corners.ravel(), group.marking
+    new = np.argsort(old)
+    marked = replace(marking, polyhedron=mesh, position=marking.position[old], sides=new[marking.sides])
+    return replace(group, marking=marked)
 
 
 @cache

@@ -60,7 +60,8 @@ def test_every_option_of_a_table_is_in_its_section(table, registry):
 
 def _defaults(kind: str, name: str, registry: Registry) -> dict[str, str]:
     """The options of the default component of a step; of all that the pipeline may choose, where it is open."""
-    chosen = {"parametrizer": list(pipeline.PARAMETRIZER.values())}.get(kind, []) if name in OPEN_NAMES else [name]
+    choices = {"parametrizer": list(pipeline.PARAMETRIZER.values()), "marker": [pipeline.MARKER]}
+    chosen = choices.get(kind, []) if name in OPEN_NAMES else [name]
     return {o.name: str(o.default) for name in chosen for o in options_of(registry.load(kind, name))}
 
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
+from orbiframe_groups.finite import FiniteGroup
+from orbiframe_groups.lattice import lattice_group
+from orbiframe_markers.tree_cotree import tree_cotree
 from orbiframe_parametrizers.double_cover import double_cover
 from orbiframe_parametrizers.plane_layout import _dipole, _unfolded_round
 from orbiframe_parametrizers.sphere import _spherical, sphere
@@ -20,7 +23,7 @@ from reference_meshes import (
     shuffled,
 )
 
-from orbiframe import MapError
+from orbiframe import MapError, MarkedGroup
 from orbiframe.topology import reversed_faces
 
 CENTRAL_ANGLE = {
@@ -171,9 +174,22 @@ def test_other_planes_are_refused(curvature):
         sphere(platonic("octahedron"), geometry(curvature))
 
 
-def test_a_group_is_refused():
-    with pytest.raises(MapError, match="takes no group"):
-        sphere(platonic("octahedron"), geometry(1), object())
+def test_a_named_group_changes_the_name_alone():
+    mesh = platonic("octahedron")
+    marking = tree_cotree(mesh)
+    named = sphere(mesh, geometry(1), MarkedGroup(FiniteGroup(geometry(1), marking.word), marking, "finite"))
+    assert named.group == "finite, word aA"
+    np.testing.assert_array_equal(named.points, sphere(mesh, geometry(1), None).points)
+
+
+def test_a_flat_group_is_refused():
+    marking = tree_cotree(reference("torus"))
+    with pytest.raises(MapError, match="lattice, word abAB does not live on s2"):
+        sphere(
+            platonic("octahedron"),
+            geometry(1),
+            MarkedGroup(lattice_group(geometry(0), marking.word), marking, "lattice"),
+        )
 
 
 def test_faces_oriented_against_each_other_are_refused():
