@@ -49,7 +49,7 @@ def weld(polyhedron: Polyhedron, tolerance: float) -> Repair:
     The first vertex of each cluster stays where it is; normals and colours become the mean of the cluster's. A face
     that folds up is taken apart into simple ones, see `drop_degenerate`; of two corners nothing is left, and the faces
     on both sides meet. Raises UsageError for a negative or infinite tolerance, TopologyError where it is so large that
-    vertices have more than a hundred neighbours.
+    no face is left, or vertices have more than a hundred neighbours on average.
     """
     if not 0 <= tolerance < np.inf:
         raise UsageError(f"the tolerance of a weld is {tolerance}, but a finite number from 0 on is required")
@@ -66,6 +66,8 @@ def weld(polyhedron: Polyhedron, tolerance: float) -> Repair:
         face_colors=polyhedron.face_colors,
     )
     simple, folded = _simple(merged)
+    if polyhedron.face_count and not simple.face_count:
+        raise TopologyError(f"a weld of {tolerance:g} folds up every face; take a smaller tolerance")
     moved = _largest_move(polyhedron.vertices, label)
     chains = ", in chains of near vertices" if moved > tolerance else ""
     parts = [

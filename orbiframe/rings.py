@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.polyhedron import Polyhedron
-from orbiframe.topology import faces_without_area
+from orbiframe.topology import faces_without_area, reversed_faces
 
 Ints = NDArray[np.intp]
 
@@ -48,18 +48,30 @@ def without_flat_faces(polyhedron: Polyhedron) -> tuple[Polyhedron, FlatFaces]:
     """The polyhedron in which faces without area are parts of others, and what became of them.
 
     Such a face joins its neighbour across its longest edge, which opens no hole. It is dropped where that edge is open,
-    and kept where the neighbour would meet a vertex twice or runs the same way along that edge.
+    and kept where the neighbour would meet a vertex twice.
     """
     joined = dropped = 0
     while True:
-        rings = _Rings(polyhedron)
         flat = faces_without_area(polyhedron).tolist()
+        rings = _Rings(_turned_to_neighbours(polyhedron, flat))
         changes = [rings.settle(face) for face in flat]
         if not any(changes):
             return polyhedron, FlatFaces(joined, dropped, len(flat))
         joined += changes.count("joined")
         dropped += changes.count("dropped")
         polyhedron = rings.polyhedron()
+
+
+def _turned_to_neighbours(polyhedron: Polyhedron, flat: list[int]) -> Polyhedron:
+    """Flat faces, which have no side, run as their neighbours with an area across the longest edges do."""
+    rings = _Rings(polyhedron)
+    longest = np.array([rings.longest(face) for face in flat], dtype=np.intp)
+    whole = np.ones(polyhedron.face_count, dtype=np.bool_)
+    whole[flat] = False
+    turn = polyhedron.same[longest] & whole[polyhedron.face[polyhedron.twin[longest]]]
+    flip = np.zeros(polyhedron.face_count, dtype=np.bool_)
+    flip[polyhedron.face[longest[turn]]] = True
+    return reversed_faces(polyhedron, flip) if turn.any() else polyhedron
 
 
 class FlatFaces(NamedTuple):
@@ -79,9 +91,13 @@ class _Rings:
         self._owner: dict[int, int] = {}
         self.gone: set[int] = set()
 
+    def longest(self, face: int) -> int:
+        """The halfedge of a face's longest edge; of edges alike, an open one."""
+        return max(self._of(face), key=lambda h: (self._mesh.edge_lengths[h], self._mesh.twin[h] < 0))
+
     def settle(self, face: int) -> str:
         """Let a face join its neighbour across the longest edge, or go; returns what happened, if anything."""
-        halfedge = max(self._of(face), key=lambda h: (self._mesh.edge_lengths[h], self._mesh.twin[h] < 0))
+        halfedge = self.longest(face)
         other = self._neighbour(halfedge)
         if other is None:
             self.gone.add(face)

@@ -76,9 +76,12 @@ def _seam_labels(points: Floats, ends: Ints) -> tuple[Ints, float]:
         return label, 0.0
     tolerance = 2 * gap
     try:
-        return clusters(points, tolerance), tolerance
+        near = clusters(points, tolerance)
     except TopologyError:
         return label, 0.0
+    # What folds an edge up is no joint: the vertices are near each other for another reason.
+    folds = (near[ends[:, 0]] == near[ends[:, 1]]) & (label[ends[:, 0]] != label[ends[:, 1]])
+    return (label, 0.0) if folds.any() else (near, tolerance)
 
 
 def _gap(points: Floats, ends: Ints) -> float:
