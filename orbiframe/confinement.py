@@ -14,8 +14,9 @@ import numpy as np
 from orbiframe.errors import FormatError, OrbiframeError, PluginError
 from orbiframe.polyhedron import Polyhedron
 
-SECONDS = 600.0
-MEMORY = 16 * 2**30
+SECONDS = 60.0
+# Beside what the libraries take: room for small files, and for each byte of a larger one so many.
+MEMORY, FACTOR = 2**28, 64
 TABLES = ("vertices", "offsets", "tail", "normals", "colors", "face_colors")
 # Exit statuses of the child that say what its last words are.
 STATUS = {FormatError: 65, PluginError: 69}
@@ -24,13 +25,14 @@ STATUS = {FormatError: 65, PluginError: 69}
 def confined_read(target: str, path: Path, *, seconds: float = SECONDS, memory: int = MEMORY) -> Polyhedron:
     """What the function `target` ("package.module:function") makes of a file, called in a process of its own.
 
-    seconds, memory: the most time and the most bytes of memory that the process may take (memory where the system can
-    limit it). Raises FormatError if the process ends in any way but well; FormatError and PluginError of the function
-    are passed on.
+    seconds, memory: the most time and the most bytes of memory that the process may take for a small file; a larger one
+    gets a second more for each megabyte and 64 bytes for each byte. Memory is counted from the import of the target's
+    module on, where the system can limit it. Raises FormatError if the process ends in any way but well; FormatError
+    and PluginError of the function are passed on.
     """
     with tempfile.TemporaryDirectory() as folder:
         parcel = Path(folder) / "polyhedron.npz"
-        _run("read", target, path, parcel, seconds, memory)
+        _run("read", target, path, parcel, *_limits(path, seconds, memory))
         return _unpacked(parcel)
 
 
@@ -41,7 +43,12 @@ def confined_write(
     with tempfile.TemporaryDirectory() as folder:
         parcel = Path(folder) / "polyhedron.npz"
         _pack(parcel, polyhedron)
-        _run("write", target, path, parcel, seconds, memory)
+        _run("write", target, path, parcel, *_limits(parcel, seconds, memory))
+
+
+def _limits(path: Path, seconds: float, memory: int) -> tuple[float, int]:
+    size = path.stat().st_size if path.is_file() else 0
+    return seconds + size / 2**20, memory + FACTOR * size
 
 
 def _run(verb: str, target: str, path: Path, parcel: Path, seconds: float, memory: int) -> None:
@@ -84,9 +91,9 @@ def _unpacked(parcel: Path) -> Polyhedron:
 
 def main(verb: str, target: str, path: str, parcel: str, memory: str) -> int:
     """Call the target; what stops it is said in one line on the standard error stream."""
-    _limit_memory(int(memory))
     module, _, name = target.partition(":")
     function = getattr(importlib.import_module(module), name)
+    _limit_memory(int(memory))
     try:
         if verb == "read":
             _pack(Path(parcel), function(Path(path)))
@@ -109,10 +116,14 @@ def _said(words: str, status: int = STATUS[FormatError]) -> int:
 
 
 def _limit_memory(size: int) -> None:
+    """No more memory than what is in use now and so many bytes."""
     try:
         import resource
-    except ImportError:  # not on Windows
+
+        pages = int(Path("/proc/self/statm").read_text().split()[0])
+    except (ImportError, OSError):  # not on Windows, not on macOS
         return
+    size += pages * resource.getpagesize()
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     _, hard = resource.getrlimit(resource.RLIMIT_AS)
     resource.setrlimit(resource.RLIMIT_AS, (size if hard < 0 else min(size, hard), hard))

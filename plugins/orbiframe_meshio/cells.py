@@ -23,6 +23,10 @@ BELOW = {"vertex", "line"}
 DIALECTS = {".msh": "gmsh22"}
 # What this dialect asks of every cell.
 TAGS: dict[str | None, tuple[str, ...]] = {"gmsh22": ("gmsh:physical", "gmsh:geometrical")}
+XML = {".vtu", ".xml", ".svg", ".xdmf", ".xmf"}
+# Formats on HDF5, netCDF and references to it.
+CONTAINERS = {".xdmf", ".xmf", ".cgns", ".h5m", ".hmf", ".med", ".e", ".exo", ".ex2"}
+INCLUDE = re.compile(rb"^[ \t]*\*[ \t]*include", re.IGNORECASE | re.MULTILINE)
 ENTITY = re.compile(rb"<!(ENTITY|DOCTYPE)")
 # Relative to the bounding box: formats that round coordinates to float32 pass, a lost digit more does not.
 ROUNDING = 1e-6
@@ -30,7 +34,7 @@ ROUNDING = 1e-6
 
 def polyhedron_of(path: Path) -> Polyhedron:
     """The polygons of a file. Raises FormatError for cells that are no polygons, and where meshio warns or ends."""
-    _require_no_entities(path)
+    _require_closed(path)
     with _strict(path):
         mesh = meshio.read(path)
     return _polyhedron(path, mesh)
@@ -94,10 +98,22 @@ def _require_same(path: Path, written: Polyhedron, found: Polyhedron) -> None:
         raise FormatError(f"{path}: meshio cannot write this polyhedron without loss; choose OFF, OBJ, PLY or VTU")
 
 
-def _require_no_entities(path: Path) -> None:
-    with path.open("rb") as file:
-        start = file.read(2**16)
-    if start.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<") and ENTITY.search(start):
+def _require_closed(path: Path) -> None:
+    """Raise FormatError for a file that may open others: by an entity, an include, or a link out of HDF5."""
+    suffix = path.suffix.lower()
+    if suffix in CONTAINERS:
+        raise FormatError(f"{path}: {suffix} files may name other files, so they are not read; save it as VTU or PLY")
+    content = path.read_bytes()
+    if suffix in XML:
+        _require_plain_xml(path, content)
+    if suffix == ".inp" and INCLUDE.search(content):
+        raise FormatError(f"{path}: the file includes another; only files that stand alone are read")
+
+
+def _require_plain_xml(path: Path, content: bytes) -> None:
+    if not content.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):
+        raise FormatError(f"{path}: the file does not start like XML in UTF-8; is it what its suffix says?")
+    if ENTITY.search(content):
         raise FormatError(f"{path}: XML with a document type or entities is not read; take them out")
 
 

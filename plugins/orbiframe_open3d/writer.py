@@ -9,12 +9,16 @@ import numpy as np
 
 from orbiframe import FormatError, Polyhedron, confined_write
 
+# Open3D is loaded inside the limit and takes address space for its threads.
+MEMORY = 2**33
 
-def write(path: Path, polyhedron: Polyhedron, *, seconds: float = 600.0) -> None:
+
+def write(path: Path, polyhedron: Polyhedron, *, seconds: float = 60.0) -> None:
     """Write triangles, with coordinates as float32.
 
-    seconds: the most time that it may take. Raises FormatError for faces that are no triangles, and where Open3D fails;
-    PluginError where it is not installed or lacks a system library. Normals and colours are left out, with a warning.
+    seconds: the most time that it may take for a small file; each megabyte adds a second. Raises FormatError for faces
+    that are no triangles, and where Open3D fails; PluginError where it is not installed or lacks a system library.
+    Normals and colours are left out, with a warning.
     """
     larger = np.flatnonzero(polyhedron.face_sizes != 3)
     if len(larger):
@@ -24,4 +28,4 @@ def write(path: Path, polyhedron: Polyhedron, *, seconds: float = 600.0) -> None
         )
     if any(table is not None for table in (polyhedron.normals, polyhedron.colors, polyhedron.face_colors)):
         warnings.warn(f"{path.name}: normals and colours are left out; PLY keeps them", stacklevel=2)
-    confined_write("orbiframe_open3d.triangles:save", path, polyhedron, seconds=seconds)
+    confined_write("orbiframe_open3d.triangles:save", path, polyhedron, seconds=seconds, memory=MEMORY)

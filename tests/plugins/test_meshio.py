@@ -1,5 +1,9 @@
 from __future__ import annotations
 
+import base64
+import struct
+import zlib
+
 import meshio
 import numpy as np
 import pytest
@@ -106,3 +110,47 @@ def test_what_is_left_out_is_named(tmp_path):
     made = Polyhedron.from_corners(POINTS[:3], [0, 3], [0, 1, 2], normals=np.ones((3, 3)))
     with pytest.warns(UserWarning, match=r"a\.vtk.*normals"):
         write(tmp_path / "a.vtk", made)
+
+
+def test_an_include_is_not_followed(tmp_path):
+    cells.save(tmp_path / "inner.inp", PYRAMID)
+    path = tmp_path / "outer.inp"
+    path.write_text("*Include, input=inner.inp\n")
+    with pytest.raises(FormatError, match=r"outer\.inp.*includes another"):
+        cells.polyhedron_of(path)
+
+
+@pytest.mark.parametrize("suffix", [".xdmf", ".med", ".cgns", ".exo", ".h5m"])
+def test_formats_that_link_to_other_files_are_not_opened(tmp_path, suffix):
+    path = tmp_path / f"a{suffix}"
+    path.write_bytes(b'<Xdmf Version="3.0"><DataItem Format="HDF">/etc/secret.h5:/points</DataItem></Xdmf>')
+    with pytest.raises(FormatError, match="may name other files"):
+        cells.polyhedron_of(path)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+def test_an_entity_behind_much_text_is_seen(tmp_path, encoding):
+    path = tmp_path / "a.vtu"
+    comment = f"<!--{'x' * 100_000}-->"
+    path.write_bytes(f'<?xml version="1.0"?>{comment}<!DOCTYPE a [<!ENTITY b SYSTEM "/etc/passwd">]>'.encode(encoding))
+    with pytest.raises(FormatError, match="XML"):
+        cells.polyhedron_of(path)
+
+
+def test_a_compressed_block_that_swells_is_stopped(tmp_path):
+    """A gigabyte of zeros in a megabyte of zlib."""
+    path = tmp_path / "a.vtu"
+    size = 2**30
+    packer = zlib.compressobj(9)
+    block = b"".join([*(packer.compress(bytes(2**22)) for _ in range(size // 2**22)), packer.flush()])
+    head = base64.b64encode(struct.pack("<4I", 1, size, size, len(block)))
+    points = head + base64.b64encode(block)
+    path.write_bytes(
+        b'<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian" header_type="UInt32" '
+        b'compressor="vtkZLibDataCompressor"><UnstructuredGrid><Piece NumberOfPoints="44739242" NumberOfCells="1">'
+        b"<Points>"
+        b'<DataArray type="Float64" NumberOfComponents="3" format="binary">' + points + b"</DataArray></Points>"
+        b"<Cells></Cells></Piece></UnstructuredGrid></VTKFile>"
+    )
+    with pytest.raises(FormatError, match=r"a\.vtu.*(memory|MemoryError)"):
+        read(path)
