@@ -32,7 +32,7 @@ class Word:
         for label, count in counts.items():
             if count != 2:
                 raise TopologyError(
-                    f"letter '{_text_of(label)}' occurs {count} time{'s' * (count != 1)} in '{self}', counting its "
+                    f"letter '{text_of(label)}' occurs {count} time{'s' * (count != 1)} in '{self}', counting its "
                     "inverse; each letter glues two sides and must occur exactly twice"
                 )
 
@@ -42,7 +42,7 @@ class Word:
         return cls(parse_letters(text))
 
     def __str__(self) -> str:
-        return "".join(map(_text_of, self.letters))
+        return "".join(map(text_of, self.letters))
 
     def __len__(self) -> int:
         return len(self.letters)
@@ -193,7 +193,8 @@ def reduced_letters(letters: Iterable[int]) -> tuple[int, ...]:
     return tuple(kept)
 
 
-def _text_of(letter: int) -> str:
+def text_of(letter: int) -> str:
+    """The text of one letter: a to z, a1 to z1, ..., upper case for the inverse."""
     number, place = divmod(abs(letter) - 1, 26)
     name = chr(ord("a") + place)
     return (name if letter > 0 else name.upper()) + (str(number) if number else "")

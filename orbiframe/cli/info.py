@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from orbiframe.cli.description import description, lines
+from orbiframe.cli.loops import add_loops, show_loops
 from orbiframe.cli.report import plain
 from orbiframe.cli.streams import read
 from orbiframe.errors import OrbiframeError, UsageError
@@ -22,11 +23,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", metavar="FILE", type=Path, nargs="+", help="meshes to look at; - for a stream")
     parser.add_argument("-i", "--input-format", metavar="FORMAT", help="name or suffix of a reader")
     parser.add_argument("--json", action="store_true", help="print one JSON object on one line for each file")
+    add_loops(parser)
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace, registry: Registry) -> int:
     """Look at every file; the status is 1 if one cannot be read."""
+    if args.loops is not None:
+        return show_loops(args, registry)
     if args.json:
         return _show_json(args, registry)
     if len(args.files) > 1:

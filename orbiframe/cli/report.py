@@ -12,9 +12,14 @@ from typing import Any
 
 def write_report(path: Path, report: Mapping[str, Any]) -> None:
     """Write a report as JSON; the file appears complete or not at all."""
+    write_text(path, json_text(report) + "\n")
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text; the file appears complete or not at all."""
     unfinished = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        unfinished.write_text(json_text(report) + "\n", encoding="utf-8")
+        unfinished.write_text(text, encoding="utf-8")
         unfinished.replace(path)
     finally:
         unfinished.unlink(missing_ok=True)
