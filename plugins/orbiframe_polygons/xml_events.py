@@ -1,0 +1,45 @@
+"""XML as a stream of elements; nothing in it can name a file or swell."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from xml.parsers import expat
+
+from orbiframe import FormatError
+
+Start = Callable[[str, dict[str, str], int], None]
+Text = Callable[[str], None]
+End = Callable[[str], None]
+
+
+def parse(path: Path, data: bytes, start: Start, text: Text, end: End) -> None:
+    """Call `start` with name, attributes and line of every element, `text` with its characters, and `end`.
+
+    Prefixes of names are taken away. Raises FormatError with the line for what is no XML, and for a document type: with
+    it go all entities.
+    """
+    parser = expat.ParserCreate()
+    parser.buffer_text = True
+
+    def refuse(*_: object) -> None:
+        line = parser.CurrentLineNumber
+        raise FormatError(f"{path}, line {line}: XML with a document type or entities is not read; take them out")
+
+    parser.StartDoctypeDeclHandler = refuse
+    parser.EntityDeclHandler = refuse
+    parser.StartElementHandler = lambda name, attributes: start(_local(name), attributes, parser.CurrentLineNumber)
+    parser.CharacterDataHandler = text
+    parser.EndElementHandler = lambda name: end(_local(name))
+    try:
+        parser.Parse(data, True)
+    except expat.ExpatError as error:
+        raise FormatError(
+            f"{path}, line {error.lineno}: this is no sound XML: {expat.ErrorString(error.code)}"
+        ) from error
+    except (LookupError, ValueError) as error:
+        raise FormatError(f"{path}: this is no sound XML: {error}") from error
+
+
+def _local(name: str) -> str:
+    return name.rpartition(":")[2]
