@@ -198,7 +198,7 @@ def test_coefficients_must_fit_the_basis(saved: Path, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("entry", [{"basis": "nowhere"}, {"geometry": "q9"}, {"options": {"no_such_option": 3}}])
 def test_components_that_are_not_there_are_named(saved: Path, tmp_path: Path, entry: dict[str, object]) -> None:
-    with pytest.raises(UsageError, match="nowhere|q9|no_such_option"):
+    with pytest.raises(UsageError, match=r"nowhere|q9|no_such_option"):
         load_surface(with_about(saved, tmp_path / "s.npz", **entry), REGISTRY)
 
 
