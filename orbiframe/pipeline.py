@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,60 +85,72 @@ def fit(mesh: str | Path | Polyhedron, config: Config, registry: Registry, progr
     surface_type = stages("topology", require_closed_surface, polyhedron)
     unit, origin, scale = _normalised(oriented(without_unused_vertices(polyhedron)))
     triangles = stages("triangles", triangulated, unit)
-    surface, samples, deviation = _approximated(triangles, surface_type, config, registry, stages)
-    surface = replace(surface, origin=origin, scale=scale)
+    fitted = _Approximation(triangles, surface_type, config, registry, stages).fitted()
+    surface = replace(fitted.surface, origin=origin, scale=scale)
     density = config.output.refine or max(1, round(np.sqrt(_OUTPUT_FACES / triangles.face_count)))
     output = stages("tessellation", surface.tessellate, density)
-    return Result(surface, output, report(surface, surface_type, config, samples, deviation, output, stages.seconds))
+    summary = report(surface, surface_type, config, fitted.samples, fitted.deviation, output, stages.seconds)
+    return Result(surface, output, summary)
 
 
-def _approximated(
-    triangles: Polyhedron, surface_type: SurfaceType, config: Config, registry: Registry, stages: _Stages
-) -> tuple[OrbifoldSurface, Samples, Deviation]:
-    """The surface of a fixed number of functions, or of as many as the tolerance asks for."""
-    tolerance = config.output.tolerance
-    size = _size(config, registry)
-    if tolerance is None:
-        return _of_size(triangles, surface_type, config, registry, stages, size)
-    size = _FIRST_SIZE
-    known: dict[float, tuple[Bisection, Triangulation]] = {}
-    while True:
-        sized = config.with_options("basis", size=size)
-        surface, samples, deviation = _of_size(triangles, surface_type, sized, registry, stages, size, known)
-        if deviation.rms <= tolerance:
-            return surface, samples, deviation
-        if 2 * size > _LARGEST_SIZE:
-            raise FitError(
-                f"{size} functions reach an error of {deviation.rms:.2e}, not the tolerance {tolerance:.2e}; "
-                "sharp edges converge slowly: allow a larger tolerance, or set basis.size yourself"
-            )
-        size *= 2
+class _Fitted(NamedTuple):
+    """A surface for a mesh of unit size, what it was fitted to, and how well."""
+
+    surface: OrbifoldSurface
+    samples: Samples
+    deviation: Deviation
 
 
-def _of_size(
-    triangles: Polyhedron,
-    surface_type: SurfaceType,
-    config: Config,
-    registry: Registry,
-    stages: _Stages,
-    size: int,
-    known: dict[float, tuple[Bisection, Triangulation]] | None = None,
-) -> tuple[OrbifoldSurface, Samples, Deviation]:
-    longest = _longest_edge(triangles, size)
-    if known is None or longest not in known:
-        refinement = stages("refinement", bisected, triangles, longest)
-        triangulation = _mapped(refinement.polyhedron, surface_type, config, registry, stages)
-        if known is not None:
-            known[longest] = (refinement, triangulation)
-    else:
-        refinement, triangulation = known[longest]
-    samples = stages("samples", coordinate_samples, triangulation)
-    basis = stages("basis", config.component("basis", registry), triangulation.orbifold, triangulation)
-    fitter = config.component("fitter", registry)()
-    coefficients = stages("fit", fitter.fit, basis, samples)
-    recipe = config.basis.name, _basis_options(config, registry)
-    surface = OrbifoldSurface(triangulation, refinement, basis, coefficients, np.zeros(3), 1.0, *recipe)
-    return surface, samples, stages("error", _deviation, surface, samples)
+@dataclass(frozen=True, eq=False)
+class _Approximation:
+    """The approximation of one triangle mesh of unit size, with as many functions as are asked for.
+
+    maps: the refinement and the map for every longest edge that has been needed so far.
+    """
+
+    triangles: Polyhedron
+    surface_type: SurfaceType
+    config: Config
+    registry: Registry
+    stages: _Stages
+    maps: dict[float, tuple[Bisection, Triangulation]] = field(default_factory=dict)
+
+    def fitted(self) -> _Fitted:
+        """The surface of a fixed number of functions, or of as many as the tolerance asks for."""
+        tolerance = self.config.output.tolerance
+        if tolerance is None:
+            return self._of_size(_size(self.config, self.registry), self.config)
+        size = _FIRST_SIZE
+        while True:
+            fitted = self._of_size(size, self.config.with_options("basis", size=size))
+            if fitted.deviation.rms <= tolerance:
+                return fitted
+            if 2 * size > _LARGEST_SIZE:
+                raise FitError(
+                    f"{size} functions reach an error of {fitted.deviation.rms:.2e}, not {tolerance:.2e}; "
+                    "sharp edges converge slowly: allow a larger tolerance, or set basis.size yourself"
+                )
+            size *= 2
+
+    def _of_size(self, size: int, config: Config) -> _Fitted:
+        stages = self.stages
+        refinement, triangulation = self._map(size)
+        samples = stages("samples", coordinate_samples, triangulation)
+        basis = stages("basis", config.component("basis", self.registry), triangulation.orbifold, triangulation)
+        fitter = config.component("fitter", self.registry)()
+        coefficients = stages("fit", fitter.fit, basis, samples)
+        recipe = config.basis.name, _basis_options(config, self.registry)
+        surface = OrbifoldSurface(triangulation, refinement, basis, coefficients, np.zeros(3), 1.0, *recipe)
+        return _Fitted(surface, samples, stages("error", _deviation, surface, samples))
+
+    def _map(self, size: int) -> tuple[Bisection, Triangulation]:
+        """The mesh refined so that samples and centres are dense enough for the basis, and its map to X/H."""
+        longest = edge_length_for(self.triangles, max(_LEAST_VERTICES, _VERTICES_PER_FUNCTION * size))
+        if longest not in self.maps:
+            refinement = self.stages("refinement", bisected, self.triangles, longest)
+            triangulation = _mapped(refinement.polyhedron, self.surface_type, self.config, self.registry, self.stages)
+            self.maps[longest] = refinement, triangulation
+        return self.maps[longest]
 
 
 def _read(path: Path, config: Config, registry: Registry) -> Polyhedron:
@@ -167,11 +179,6 @@ def _basis_options(config: Config, registry: Registry) -> dict[str, Any]:
 def _size(config: Config, registry: Registry) -> int:
     """The number of functions that the basis will have, as far as its options tell."""
     return int(_basis_options(config, registry).get("size", 1000))
-
-
-def _longest_edge(triangles: Polyhedron, size: int) -> float:
-    """How finely the mesh is refined for the map, so that samples and centres are dense enough for the basis."""
-    return edge_length_for(triangles, max(_LEAST_VERTICES, _VERTICES_PER_FUNCTION * size))
 
 
 def _mapped(
