@@ -177,7 +177,7 @@ def test_a_tolerance_is_reached_with_few_functions() -> None:
 
 def test_a_tolerance_out_of_reach_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pipeline, "_LARGEST_SIZE", 500)
-    with pytest.raises(FitError, match=r"500 functions reach an error of .*, not the tolerance 1.00e-09"):
+    with pytest.raises(FitError, match=r"500 functions reach an error of .*, not 1.00e-09"):
         pipeline.fit(DATASETS / "cube.off", tolerance(1e-9), REGISTRY)
 
 
@@ -216,7 +216,7 @@ def test_a_number_of_functions_that_is_not_positive_is_refused(size: int) -> Non
 
 
 def test_more_functions_than_vertices_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pipeline, "_longest_edge", lambda triangles, size: math.inf)
+    monkeypatch.setattr(pipeline, "edge_length_for", lambda triangles, vertices: math.inf)
     with pytest.raises(FitError, match="500 functions need as many distinct vertices"):
         pipeline.fit(DATASETS / "sphere.off", config(500), REGISTRY)
 
