@@ -86,7 +86,7 @@ def notes(polyhedron: Polyhedron) -> list[Note]:
     if len(thin):
         where = "faces " + ", ".join(map(str, thin[:5])) + (", …" if len(thin) > 5 else "")
         found.append(Note("needles", len(thin), f"{where}, thinner than {_THIN:g} of their longest edge"))
-    used = polyhedron.vertices[np.unique(polyhedron.tail)]
+    used = polyhedron.vertices[np.bincount(polyhedron.tail, minlength=len(polyhedron.vertices)) > 0]
     size = math.hypot(*np.ptp(used / 4, axis=0)) * 4 if len(used) else 0.0
     largest = float(np.abs(used).max(initial=0.0))
     if size > _LARGE or 0 < size < _SMALL:

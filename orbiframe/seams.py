@@ -61,9 +61,10 @@ def seams(polyhedron: Polyhedron) -> Seams:
     first = first_of_each(label)
     junctions, complete = _junctions(points[first], label[local][left], tolerance)
     together = np.bincount(label)[label] > 1
-    on_seam = np.isin(np.arange(len(vertex)), np.delete(local, left, axis=0)) & together
+    on_seam = np.zeros(len(vertex), dtype=np.bool_)
+    on_seam[np.delete(local, left, axis=0)] = True
     named = vertex[first][junctions]
-    return Seams(vertex[on_seam], _round_up(tolerance / unit), len(local) - len(left), named, complete)
+    return Seams(vertex[on_seam & together], _round_up(tolerance / unit), len(local) - len(left), named, complete)
 
 
 def _seam_labels(points: Floats, ends: Ints) -> tuple[Ints, float]:
@@ -100,7 +101,7 @@ def _gap(points: Floats, ends: Ints) -> float:
 
 def _junctions(points: Floats, ends: Ints, tolerance: float) -> tuple[Ints, bool]:
     """Ends of open edges inside of other open edges: (m, 3) of a point and two ends; and whether all were looked at."""
-    vertex = np.unique(ends)
+    vertex = np.flatnonzero(np.bincount(ends.ravel()))
     tree = cKDTree(points[vertex]) if len(vertex) else None
     length = np.linalg.norm(points[ends[:, 1]] - points[ends[:, 0]], axis=1)
     # Short edges first: long ones among many points are what may cost too much.

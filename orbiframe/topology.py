@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -223,7 +224,7 @@ def fans_at_vertices(polyhedron: Polyhedron) -> Ints:
 
 
 def _listed(items: Iterable[object], limit: int = 5) -> str:
-    shown = [str(item) for item in items]
+    shown = [str(item) for item in islice(items, limit + 1)]
     return ", ".join(shown[:limit]) + (", …" if len(shown) > limit else "")
 
 
@@ -258,7 +259,7 @@ def duplicate_faces(polyhedron: Polyhedron) -> list[tuple[int, int]]:
     pairs: list[tuple[int, int]] = []
     order = np.lexsort((polyhedron.tail, polyhedron.face))
     tail = polyhedron.tail[order]
-    for size in np.unique(polyhedron.face_sizes):
+    for size in np.flatnonzero(np.bincount(polyhedron.face_sizes)):
         faces = np.flatnonzero(polyhedron.face_sizes == size)
         if size == 0 or len(faces) < 2:
             continue
@@ -284,9 +285,10 @@ def _broken_edges(polyhedron: Polyhedron, joints: Seams) -> list[Defect]:
         return []
     low = np.minimum(polyhedron.tail[alone], polyhedron.head[alone])
     high = np.maximum(polyhedron.tail[alone], polyhedron.head[alone])
-    ends, first, inverse, count = np.unique(
-        np.stack([low, high], axis=1), axis=0, return_index=True, return_inverse=True, return_counts=True
+    _, first, inverse, count = np.unique(
+        low * np.intp(len(polyhedron.vertices)) + high, return_index=True, return_inverse=True, return_counts=True
     )
+    ends = np.stack([low, high], axis=1)[first]
     found = []
     open_edges = np.flatnonzero(count == 1)
     if len(open_edges):
@@ -363,7 +365,9 @@ def _unused(polyhedron: Polyhedron) -> Defect | None:
 
 def _coincident(polyhedron: Polyhedron, found: Seams) -> Defect | None:
     """Different vertices in one place, but for those that a weld of open edges joins."""
-    used = np.setdiff1d(np.flatnonzero(_used_vertices(polyhedron)), found.vertices if found.closed else [])
+    looked_at = _used_vertices(polyhedron)
+    looked_at[found.vertices] &= not found.closed
+    used = np.flatnonzero(looked_at)
     label = clusters(polyhedron.vertices[used])
     bad = used[np.bincount(label)[label] > 1]
     return Defect("coincident vertices", len(bad), f"vertices {_listed(bad)}", False) if len(bad) else None
