@@ -65,8 +65,8 @@ def equivariant(
 
 def _refused(group: MarkedGroup) -> str:
     return (
-        f"the map to the group '{group.name}' with {len(group.group.word)} sides fails; let the group come from the "
-        "mesh (group.method = 'mesh')"
+        f"the map to the group '{group.name}' with {len(group.group.word)} sides fails; refine the mesh, or let the "
+        "group come from it (group.method = 'mesh')"
     )
 
 
