@@ -32,13 +32,13 @@ def test_a_torus_takes_the_lattice_that_is_named(orbiframe, tmp_path):
     for vectors in ([], ["--set", f"group.second=[0, {ratio}]"]):
         ran = orbiframe(
             *("fit", DATASETS / "torus.off", "-o", tmp_path / "smooth.ply", "--group", "lattice", *vectors),
-            *("--map", "equivariant", "--size", 60, "--refine", 1, "--json", "--set", "marking.bases=4"),
+            *("--map", "equivariant", "--size", 60, "--refine", 1, "--json"),
         )
         assert (ran.status, ran.err) == (0, "")
         found = json.loads(ran.out)
         assert found["group"]["source"].startswith("lattice, word ab")
         medians.append(found["map"]["angle_distortion"]["median"])
-    assert medians == pytest.approx([ratio, 1], rel=0.03)
+    assert medians == pytest.approx([ratio, 1], rel=0.05)
 
 
 @pytest.mark.parametrize(
