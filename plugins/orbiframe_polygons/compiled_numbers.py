@@ -137,13 +137,13 @@ def find_lines(data, begin, end, number, words):  # type: ignore[no-untyped-def]
 
     A line that is joined to the next has its own mark (CONTINUED), which counts as a blank and as an end of line.
     """
-    row, line, count, inside = 0, 0, 0, False
+    row, line, first, count, inside = 0, 0, 0, 0, False
     for at in range(len(data)):
         code = data[at]
         if code > BLANK:
             if not inside:
                 if count == 0:
-                    begin[row], number[row] = at, line
+                    begin[row], number[row] = at, first
                 count += 1
                 inside = True
             continue
@@ -154,6 +154,7 @@ def find_lines(data, begin, end, number, words):  # type: ignore[no-untyped-def]
                 row += 1
                 count = 0
             line += 1
+            first = line
         elif code == CONTINUED:
             line += 1
     if count:

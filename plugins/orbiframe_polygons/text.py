@@ -98,7 +98,7 @@ class Text:
             bad = np.flatnonzero(~finite)
             row = int(np.searchsorted(self.first, bad[0], side="right")) - 1
             word = self.line(row).split()[int(bad[0] - self.first[row])]
-            self.refuse(row, f"found {shown(word)}, but only finite numbers are allowed")
+            self.refuse(row, f"found {shown(word)}, but a finite decimal number is required")
         return values
 
     def refuse(self, row: int, complaint: str) -> NoReturn:
@@ -112,7 +112,7 @@ class Text:
         for row in range(len(self)):
             for word in self.line(row).split():
                 if not NUMBER.fullmatch(word):
-                    self.refuse(row, f"found {shown(word)}, but a decimal number is required")
+                    self.refuse(row, f"found {shown(word)}, but a finite decimal number is required")
         raise FormatError(f"{self.path}: the numbers cannot be read; is this a text file?")
 
 
