@@ -63,15 +63,18 @@ def without_flat_faces(polyhedron: Polyhedron) -> tuple[Polyhedron, FlatFaces]:
 
 
 def _turned_to_neighbours(polyhedron: Polyhedron, flat: list[int]) -> Polyhedron:
-    """Flat faces, which have no side, run as their neighbours with an area across the longest edges do."""
+    """Flat faces, which have no side of their own, run as their neighbours across the longest edges do."""
     rings = _Rings(polyhedron)
-    longest = np.array([rings.longest(face) for face in flat], dtype=np.intp)
-    whole = np.ones(polyhedron.face_count, dtype=np.bool_)
-    whole[flat] = False
-    turn = polyhedron.same[longest] & whole[polyhedron.face[polyhedron.twin[longest]]]
     flip = np.zeros(polyhedron.face_count, dtype=np.bool_)
-    flip[polyhedron.face[longest[turn]]] = True
-    return reversed_faces(polyhedron, flip) if turn.any() else polyhedron
+    loose = set(flat)
+    for face in flat:
+        halfedge = rings.longest(face)
+        other = int(polyhedron.face[polyhedron.twin[halfedge]])
+        free = next((f for f in (face, other) if f in loose), None)
+        if free is not None and polyhedron.same[halfedge] ^ flip[face] ^ flip[other]:
+            flip[free] = True
+        loose -= {face, other}
+    return reversed_faces(polyhedron, flip) if flip.any() else polyhedron
 
 
 class FlatFaces(NamedTuple):
@@ -92,8 +95,14 @@ class _Rings:
         self.gone: set[int] = set()
 
     def longest(self, face: int) -> int:
-        """The halfedge of a face's longest edge; of edges alike, an open one."""
-        return max(self._of(face), key=lambda h: (self._mesh.edge_lengths[h], self._mesh.twin[h] < 0))
+        """The halfedge of a face's longest edge; of edges alike, an open one, then the one of the largest vertices."""
+
+        def rank(halfedge: int) -> tuple[float, bool, list[int]]:
+            mesh = self._mesh
+            ends = sorted([int(mesh.tail[halfedge]), int(mesh.head[halfedge])])
+            return float(mesh.edge_lengths[halfedge]), bool(mesh.twin[halfedge] < 0), ends
+
+        return max(self._of(face), key=rank)
 
     def settle(self, face: int) -> str:
         """Let a face join its neighbour across the longest edge, or go; returns what happened, if anything."""
