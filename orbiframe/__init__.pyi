@@ -27,7 +27,7 @@ from orbiframe.plugin import Component as Component, hookimpl as hookimpl
 from orbiframe.polygon import FundamentalPolygon as FundamentalPolygon, regular_polygon as regular_polygon
 from orbiframe.polygon_group import PolygonGroup as PolygonGroup
 from orbiframe.polyhedron import Polyhedron as Polyhedron
-from orbiframe.presentation import Presentation as Presentation, presentation as presentation
+from orbiframe.presentation import Presentation as Presentation
 from orbiframe.quadrature import triangle_points as triangle_points, triangle_rule as triangle_rule
 from orbiframe.registry import Registry as Registry
 from orbiframe.samples import Samples as Samples

@@ -16,6 +16,21 @@ class Presentation:
     generators: tuple[int, ...]
     relator: tuple[int, ...] = ()
 
+    @classmethod
+    def of(cls, word: Word) -> Presentation:
+        """The fundamental group of the surface that a word glues: its letters, and the word itself.
+
+        The word has one vertex, or is that of a sphere, `aA`. Raises TopologyError for another word, whose letters are
+        paths from vertex to vertex and no loops.
+        """
+        if word.euler_characteristic == 2 and len(word) == 2:
+            return cls(())
+        if len(word.vertex_cycles) != 1:
+            raise TopologyError(
+                f"the sides of '{word}' end in {len(word.vertex_cycles)} vertices; a presentation needs a word with one"
+            )
+        return cls(tuple(sorted({abs(letter) for letter in word.letters})), word.letters)
+
     def __str__(self) -> str:
         """In the usual form, such as "<a, b | abAB>"."""
         return f"<{', '.join(map(text_of, self.generators))} | {''.join(map(text_of, self.relator))}>"
@@ -35,18 +50,3 @@ class Presentation:
         rank, torsion = self.homology
         free = ["Z" if rank == 1 else f"Z^{rank}"] if rank else []
         return " + ".join([*free, *([f"Z/{torsion}"] if torsion > 1 else [])]) or "0"
-
-
-def presentation(word: Word) -> Presentation:
-    """The fundamental group of the surface that a word glues: its letters, and the word itself.
-
-    The word has one vertex, or is that of a sphere, `aA`. Raises TopologyError for another word, whose letters are
-    paths from vertex to vertex and no loops.
-    """
-    if word.euler_characteristic == 2 and len(word) == 2:
-        return Presentation(())
-    if len(word.vertex_cycles) != 1:
-        raise TopologyError(
-            f"the sides of '{word}' end in {len(word.vertex_cycles)} vertices; a presentation needs a word with one"
-        )
-    return Presentation(tuple(sorted({abs(letter) for letter in word.letters})), word.letters)

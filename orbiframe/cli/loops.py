@@ -52,13 +52,13 @@ def marked(mesh: Polyhedron, registry: Registry) -> dict[str, Any]:
     """
     import numpy as np
 
-    from orbiframe.presentation import presentation
+    from orbiframe.presentation import Presentation
     from orbiframe.topology import require_closed_surface, without_unused_vertices
 
     require_closed_surface(mesh)
     used = np.unique(mesh.tail)
     marking = registry.load("marker", MARKER)(without_unused_vertices(mesh))
-    group = presentation(marking.word)
+    group = Presentation.of(marking.word)
     return {
         "word": str(marking.word),
         "fundamental_group": str(group),

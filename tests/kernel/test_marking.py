@@ -9,7 +9,7 @@ from orbiframe_markers.tree_cotree import tree_cotree
 from random_polyhedra import random_polyhedra
 from reference_surfaces import ALL, triangulated
 
-from orbiframe import Marking, Polyhedron, TopologyError, Word, marking_along, presentation, surface_type
+from orbiframe import Marking, Polyhedron, Presentation, TopologyError, Word, marking_along, surface_type
 from orbiframe.testing.marker_laws import _plain
 from orbiframe.testing.polyhedra import reference_polyhedra
 
@@ -105,7 +105,7 @@ def test_random_polyhedra_have_the_word_of_their_surface_and_its_homology(mesh):
     marking, surface = tree_cotree(mesh), surface_type(mesh)
     word = marking.word
     assert (word.euler_characteristic, word.orientable) == (surface.euler_characteristic, surface.orientable)
-    assert presentation(word).homology == homology(mesh)
+    assert Presentation.of(word).homology == homology(mesh)
     assert len(marking.loops) == 2 - surface.euler_characteristic
 
 
@@ -169,17 +169,17 @@ def _tree(marking: Marking) -> np.ndarray:
 @given(st.sampled_from(WORDS))
 def test_presentations_read_the_word(text):
     word = Word.parse(text)
-    group = presentation(word)
+    group = Presentation.of(word)
     rank = len(word) // 2
     assert group.relator == word.letters
     assert group.homology == ((rank, 1) if word.orientable else (rank - 1, 2))
 
 
 def test_presentations_in_words():
-    assert str(presentation(Word.parse("abaB"))) == "<a, b | abaB>"
-    assert presentation(Word.parse("abaB")).homology_text == "Z + Z/2"
-    assert presentation(Word.parse("abcdABCD")).homology_text == "Z^4"
-    assert presentation(Word.parse("aa")).homology_text == "Z/2"
-    assert presentation(Word.parse("aA")).homology_text == "0"
+    assert str(Presentation.of(Word.parse("abaB"))) == "<a, b | abaB>"
+    assert Presentation.of(Word.parse("abaB")).homology_text == "Z + Z/2"
+    assert Presentation.of(Word.parse("abcdABCD")).homology_text == "Z^4"
+    assert Presentation.of(Word.parse("aa")).homology_text == "Z/2"
+    assert Presentation.of(Word.parse("aA")).homology_text == "0"
     with pytest.raises(TopologyError, match="end in 2 vertices"):
-        presentation(Word.parse("abcABC"))
+        Presentation.of(Word.parse("abcABC"))
