@@ -16,13 +16,23 @@ from orbiframe_polygons.weld import welded
 
 Floats = NDArray[np.floating]
 Codes = NDArray[np.uint64]
-Bools = NDArray[np.bool_]
+Ints = NDArray[np.intp]
 
 HEADER_SIZE, RECORD_SIZE = 84, 50
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 FACET = [b"facet", b"outer", b"vertex", b"vertex", b"vertex", b"endloop", b"endfacet"]
 BREAK = re.compile(rb"(?i) (?=(?:solid|facet|outer|vertex|endloop|endfacet|endsolid)(?: |$))")
+SPACE = re.compile(rb"\s+")
 FACET_WORDS = [5, 2, 4, 4, 4, 1, 1]
+
+
+def _code(word: bytes) -> np.uint64:
+    return np.uint64(int.from_bytes(word.ljust(8, b"\0"), "big"))
+
+
+SOLID, ENDSOLID = _code(b"solid"), _code(b"endsolid")
+# Bytes of text that are looked at together.
+BLOCK = 2**24
 
 
 def read(path: Path) -> Polyhedron:
@@ -57,25 +67,44 @@ def _ascii(path: Path, data: bytes) -> Floats:
     _require_text(path, data)
     content = plain(path, data)
     try:
-        return _corners(table(path, content))
+        return _by_lines(path, content)
     except FormatError:
         # Words may be broken into lines anyhow; where they do not even then make facets, the first reason stands.
         if b"endsolid" not in content.rstrip().rpartition(b"\n")[2].lower():
             raise
-        loose = BREAK.sub(b"\n", b" ".join(content.split()))
+        loose = BREAK.sub(b"\n", SPACE.sub(b" ", content))
         with contextlib.suppress(FormatError):
-            return _corners(table(path, loose))
+            return _by_lines(path, loose)
         raise
 
 
-def _corners(text: Text) -> Floats:
-    keyword = _keywords(text)
-    solid, endsolid = (np.isin(keyword, _code(word)) for word in (b"solid", b"endsolid"))
-    _require_solids(text, solid, endsolid)
-    facets = text.only(~solid & ~endsolid)
-    _require_facets(facets, keyword[~solid & ~endsolid])
-    corners = facets.only(np.isin(np.arange(len(facets)) % len(FACET), (2, 3, 4)))
-    return corners.without_keyword(len(b"vertex")).numbers().reshape(-1, 3, 3)
+def _by_lines(path: Path, content: bytes) -> Floats:
+    """The corners of all facets, (n, 3, 3), from blocks of the text, so that its lines take little memory."""
+    corners, at, line, inside = [], 0, 1, 0
+    while at < len(content):
+        end = _block_end(content, at)
+        text = table(path, content[at:end], line=line)
+        keyword = _keywords(text)
+        mark = np.isin(keyword, SOLID).astype(np.intp) - np.isin(keyword, ENDSOLID)
+        inside = _require_solids(text, mark, inside)
+        if inside and end == len(content):
+            text.refuse(len(text) - 1, "the file ends before 'endsolid'; is it cut short?")
+        facets = text.only(mark == 0)
+        _require_facets(facets, keyword[mark == 0])
+        vertices = facets.only(np.isin(np.arange(len(facets)) % len(FACET), (2, 3, 4)))
+        corners.append(vertices.without_keyword(len(b"vertex")).numbers().reshape(-1, 3, 3))
+        line += content.count(b"\n", at, end)
+        at = end
+    return np.concatenate(corners)
+
+
+def _block_end(content: bytes, at: int) -> int:
+    """The end of a line that ends a facet, or of the text."""
+    if len(content) - at <= BLOCK:
+        return len(content)
+    facet = max(content.rfind(word, at, at + BLOCK) for word in (b"endfacet", b"ENDFACET"))
+    newline = content.find(b"\n", facet) if facet > at else -1
+    return newline + 1 or len(content)
 
 
 def _require_text(path: Path, data: bytes) -> None:
@@ -104,18 +133,16 @@ def _keywords(text: Text) -> Codes:
     return code
 
 
-def _code(word: bytes) -> np.uint64:
-    return np.uint64(int.from_bytes(word.ljust(8, b"\0"), "big"))
+def _require_solids(text: Text, mark: Ints, inside: int) -> int:
+    """Whether the text ends inside a solid. Raises FormatError where something stands outside of solids, or one in one.
 
-
-def _require_solids(text: Text, solid: Bools, endsolid: Bools) -> None:
-    starts, ends = np.flatnonzero(solid), np.flatnonzero(endsolid)
-    if len(starts) > len(ends):
-        text.refuse(len(text) - 1, "the file ends before 'endsolid'; is it cut short?")
-    # A file is solid … endsolid, solid … endsolid, and so on: each solid starts on the line after the end of the last.
-    before = np.concatenate([[-1], ends])
-    if len(starts) != len(ends) or (starts != before[:-1] + 1).any() or before[-1] != len(text) - 1:
-        raise FormatError(f"{text.path}: something stands outside of the pairs of 'solid' and 'endsolid'")
+    mark: 1 for lines of 'solid', -1 for lines of 'endsolid'; inside: 1 where the text starts inside a solid.
+    """
+    depth = inside + np.cumsum(mark)
+    wrong = (depth != 1) & ((mark == 0) | (depth != 0))
+    if wrong.any():
+        text.refuse(int(wrong.argmax()), "this stands outside of the pairs of 'solid' and 'endsolid'")
+    return int(depth[-1]) if len(depth) else inside
 
 
 def _require_facets(facets: Text, keyword: Codes) -> None:

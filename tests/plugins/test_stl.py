@@ -5,6 +5,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from orbiframe_polygons import stl_reader
 from orbiframe_polygons.stl_reader import read
 from orbiframe_polygons.stl_writer import write
 
@@ -121,3 +122,15 @@ def test_text_keeps_float64(tmp_path):
     made = Polyhedron.from_faces(np.random.default_rng(1).normal(size=(4, 3)), [[0, 1, 2], [0, 2, 3]])
     write(tmp_path / "a.stl", made, ascii=True)
     assert np.array_equal(read(tmp_path / "a.stl").vertices, made.vertices)
+
+
+@pytest.mark.parametrize("size", [1, 50, 200, 300, 1000])
+def test_text_read_in_blocks(tmp_path, monkeypatch, size):
+    monkeypatch.setattr(stl_reader, "BLOCK", size)
+    twice = text(CORNERS[:1]) + text(CORNERS[1:]).replace("solid a b", "solid endfacet")
+    found = read(of(tmp_path, twice))
+    assert found.triangles.tolist() == [[0, 1, 2], [0, 2, 3], [2, 1, 3]]
+    with pytest.raises(FormatError, match=r"line 19.*'one'"):
+        read(of(tmp_path, PLAIN.replace("vertex 1 0 0\n  vertex 0 1 0\n", "vertex 1 0 0\n  vertex 0 one 0\n")))
+    with pytest.raises(FormatError, match=r"line 24.*outside"):
+        read(of(tmp_path, PLAIN + "facet\n"))
