@@ -14,6 +14,7 @@ import tempfile
 import time
 import tracemalloc
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -51,14 +52,24 @@ def torus(count: int) -> Polyhedron:
     return Polyhedron.from_faces(points, np.stack(corners, axis=1).reshape(-1, 3))
 
 
-def speed(action: Callable[[], object], size: float, runs: int) -> float:
-    """Megabytes for a second, by the best of some runs."""
-    best = float("inf")
-    for _ in range(runs):
-        start = time.perf_counter()
-        action()
-        best = min(best, time.perf_counter() - start)
-    return size / 1e6 / best
+@dataclass(frozen=True)
+class Trial:
+    """How speeds are measured: by how many runs, and by which clock."""
+
+    runs: int
+    clock: Callable[[], float]
+
+    def speed(self, action: Callable[[], object], size: float) -> str:
+        """Megabytes for a second, by the best of the runs; what the library raises, if it does."""
+        best = float("inf")
+        try:
+            for _ in range(self.runs):
+                start = self.clock()
+                action()
+                best = min(best, self.clock() - start)
+        except (Exception, SystemExit) as error:
+            return type(error).__name__
+        return f"{size / 1e6 / best:.0f}"
 
 
 def orbiframe_actions(path: Path, mesh: Polyhedron, options: dict[str, bool]) -> tuple[Callable[[], object], ...]:
@@ -90,39 +101,32 @@ def open3d_actions(path: Path, mesh: Polyhedron, options: dict[str, bool]) -> tu
 PEERS = {"orbiframe": orbiframe_actions, "meshio": meshio_actions, "Open3D": open3d_actions}
 
 
-def rows(count: int, runs: int) -> Iterator[list[str]]:
+def rows(names: list[str], count: int, trial: Trial) -> Iterator[list[str]]:
     """A row for each format: its megabytes, and for each peer the speeds of reading and writing."""
     with tempfile.TemporaryDirectory() as folder:
-        for name, (suffix, options) in FORMATS.items():
-            path = Path(folder) / f"mesh.{suffix}"
-            for made in (torus(1000), torus(count)):  # the first loads what is to be loaded
-                REGISTRY.load("writer", suffix)(path, made, **options)
+        for name in names:
+            suffix, options = FORMATS[name]
+            path, made = Path(folder) / f"mesh.{suffix}", torus(count)
+            REGISTRY.load("writer", suffix)(path, made, **options)
             size = path.stat().st_size
-            yield [name, f"{size / 1e6:.0f}", *(_speeds(peer, path, made, options, size, runs) for peer in PEERS)]
+            yield [name, f"{size / 1e6:.0f}", *(_speeds(peer, path, made, options, size, trial) for peer in PEERS)]
 
 
-def _speeds(peer: str, path: Path, mesh: Polyhedron, options: dict[str, bool], size: int, runs: int) -> str:
+def _speeds(peer: str, path: Path, mesh: Polyhedron, options: dict[str, bool], size: int, trial: Trial) -> str:
     try:
-        read, write = PEERS[peer](path, mesh, options)
+        actions = PEERS[peer](path, mesh, options)
     except ImportError:
         return "–"
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-        return " / ".join(_speed(action, size, runs) for action in (read, write))
+        return " / ".join(trial.speed(action, size) for action in actions)
 
 
-def _speed(action: Callable[[], object], size: int, runs: int) -> str:
-    try:
-        return f"{speed(action, size, runs):.0f}"
-    except (Exception, SystemExit) as error:
-        return type(error).__name__
-
-
-def memory(count: int) -> Iterator[list[str]]:
+def memory(names: list[str], count: int) -> Iterator[list[str]]:
     """A row for each format: the most memory while reading, in times of the result."""
     with tempfile.TemporaryDirectory() as folder:
-        for name, (suffix, options) in FORMATS.items():
-            path = Path(folder) / f"mesh.{suffix}"
-            made = torus(count)
+        for name in names:
+            suffix, options = FORMATS[name]
+            path, made = Path(folder) / f"mesh.{suffix}", torus(count)
             REGISTRY.load("writer", suffix)(path, made, **options)
             formats.read(path, REGISTRY)
             tracemalloc.start()
@@ -137,11 +141,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--triangles", type=int, default=1_000_000)
     parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--formats", nargs="+", choices=FORMATS, default=list(FORMATS), metavar="NAME")
+    parser.add_argument("--cpu", action="store_true", help="count processor seconds, where other work goes on beside")
     parser.add_argument("--memory", action="store_true")
     args = parser.parse_args()
     heading = ["format", "memory"] if args.memory else ["format", "MB", *(f"{peer}: read / write" for peer in PEERS)]
     print(f"| {' | '.join(heading)} |\n{'|---' * len(heading)}|")
-    for row in memory(args.triangles) if args.memory else rows(args.triangles, args.runs):
+    trial = Trial(args.runs, time.process_time if args.cpu else time.perf_counter)
+    count = args.triangles
+    for row in memory(args.formats, count) if args.memory else rows(args.formats, count, trial):
         print(f"| {' | '.join(row)} |", flush=True)
 
 
