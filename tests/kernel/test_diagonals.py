@@ -76,11 +76,13 @@ def test_corners_on_a_straight_side() -> None:
 
 
 @pytest.mark.parametrize("reflex", range(4))
-@pytest.mark.parametrize("depth", [0.1, 0.3, 0.49])
-def test_a_concave_quadrilateral_is_cut_through_its_reflex_corner(reflex: int, depth: float) -> None:
-    arrow = np.array([[1, -1], [1, 1], [-1, 1], [depth, -depth]])
-    assert_cut_well(np.roll(arrow, reflex - 3, axis=0))
-    triangles, _ = cut(np.roll(arrow, reflex - 3, axis=0))
+@pytest.mark.parametrize("depth", [0.1, 0.5, 0.9])
+@pytest.mark.parametrize("length", [1, 30])
+def test_a_concave_quadrilateral_is_cut_through_its_reflex_corner(reflex: int, depth: float, length: float) -> None:
+    """Also where that diagonal is the longer one."""
+    arrow = np.roll([[0, -1], [length, 0], [0, 1], [depth * length, 0]], reflex - 3, axis=0)
+    assert_cut_well(arrow)
+    triangles, _ = cut(arrow)
     assert all(reflex in triangle for triangle in triangles.tolist())
 
 
