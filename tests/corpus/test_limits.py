@@ -1,0 +1,135 @@
+"""Bad files cost little time and memory, and no path in a file is followed."""
+
+from __future__ import annotations
+
+import contextlib
+import subprocess
+import sys
+import time
+import tracemalloc
+import warnings
+import zipfile
+
+import pytest
+from corpus import bad_files
+from orbiframe_polygons.threemf_reader import MODEL, RELATIONS
+from orbiframe_polygons.threemf_writer import RELATION
+
+from orbiframe import FormatError, formats
+from orbiframe.registry import Registry
+
+REGISTRY = Registry.discover()
+SECRET = "secret-place"
+
+
+def attempt(path) -> None:
+    with warnings.catch_warnings(), contextlib.suppress(FormatError):
+        warnings.simplefilter("ignore")
+        formats.read(path, REGISTRY)
+
+
+def test_every_file_of_the_corpus_takes_less_than_a_second_and_100_megabytes(tmp_path):
+    paths = []
+    for case in bad_files.cases():
+        paths.append(tmp_path / case.name)
+        paths[-1].write_bytes(case.content)
+    attempt(max(paths, key=lambda path: path.stat().st_size))  # loads the compiled ways
+    for path in paths:
+        start = time.process_time()
+        attempt(path)
+        assert time.process_time() - start < 1, path.name
+    tracemalloc.start()
+    try:
+        for path in paths:
+            tracemalloc.reset_peak()
+            before = tracemalloc.get_traced_memory()[0]
+            attempt(path)
+            assert tracemalloc.get_traced_memory()[1] - before < 100e6, path.name
+    finally:
+        tracemalloc.stop()
+
+
+READ = """
+import sys, warnings
+from pathlib import Path
+from orbiframe import FormatError, formats
+from orbiframe.registry import Registry
+
+def listen(event, arguments):
+    if event in ("open", "os.listdir", "os.scandir", "socket.connect") and "secret-place" in repr(arguments):
+        print("opened", event, arguments)
+sys.addaudithook(listen)
+if len(sys.argv) > 2:
+    import importlib
+    function = getattr(importlib.import_module("orbiframe_meshio.cells"), "polyhedron_of")
+else:
+    registry = Registry.discover()
+    function = lambda path: formats.read(path, registry)
+try:
+    function(Path(sys.argv[1]))
+    print("read")
+except FormatError:
+    print("refused")
+"""
+
+
+def outcome(path, *more: str) -> str:
+    """What a process of its own says: opened, read or refused."""
+    run = subprocess.run([sys.executable, "-c", READ, str(path), *more], capture_output=True, text=True, check=True)
+    return run.stdout.strip()
+
+
+def xdmf(form: str, text: str) -> str:
+    return (
+        '<Xdmf Version="3.0"><Domain><Grid><Geometry GeometryType="XYZ">'
+        f'<DataItem Format="{form}" Dimensions="3 3">{text}</DataItem></Geometry></Grid></Domain></Xdmf>'
+    )
+
+
+def entity(place: str) -> str:
+    return f'<?xml version="1.0"?><!DOCTYPE a [<!ENTITY b SYSTEM "file://{place}">]><VTKFile>&b;</VTKFile>'
+
+
+NAMING = {
+    "material.obj": (lambda p: f"mtllib {p}\nusemtl a\nmap_Kd {p}\n", "refused"),
+    "library.obj": (lambda p: f"mtllib {p}\n" + bad_files.OBJ, "read"),
+    "comment.ply": (lambda p: bad_files.PLY.replace("made by hand", f"TextureFile {p}"), "read"),
+    "hdf.xdmf": (lambda p: xdmf("HDF", f"{p}:/points"), "refused"),
+    "binary.xdmf": (lambda p: xdmf("Binary", str(p)), "refused"),
+    "include.xdmf": (
+        lambda p: f'<Xdmf xmlns:xi="http://www.w3.org/2001/XInclude"><xi:include href="{p}"/></Xdmf>',
+        "refused",
+    ),
+    "entity.xdmf": (entity, "refused"),
+}
+
+
+@pytest.mark.parametrize("name", NAMING)
+def test_a_path_in_a_file_is_not_followed(tmp_path, name):
+    (tmp_path / SECRET).write_text(bad_files.OBJ)
+    content, expected = NAMING[name]
+    (tmp_path / name).write_text(content(tmp_path / SECRET))
+    assert outcome(tmp_path / name) == expected
+
+
+@pytest.mark.parametrize("name", ["entity.vtu", "include.inp", "link.med", "link.cgns"])
+def test_meshio_follows_no_path(tmp_path, name):
+    secret = tmp_path / SECRET
+    secret.write_text("*NODE\n1, 0, 0, 0\n")
+    content = {"entity": entity(secret), "include": f"*INCLUDE, INPUT={secret}\n", "link": str(secret)}
+    (tmp_path / name).write_text(content[name.split(".")[0]])
+    assert outcome(tmp_path / name, "meshio") == "refused"
+
+
+def test_a_model_in_another_part_is_not_opened(tmp_path):
+    path = tmp_path / "a.3mf"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr(RELATIONS, RELATION.replace(MODEL, f"../../{SECRET}"))
+    (tmp_path / SECRET).write_text("<model/>")
+    assert outcome(path) == "refused"
+
+
+def test_the_listener_hears(tmp_path):
+    path = tmp_path / f"{SECRET}.obj"
+    path.write_text(bad_files.OBJ)
+    assert outcome(path).startswith("opened")
