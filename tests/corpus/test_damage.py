@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import io
 import warnings
+import zipfile
 
 import numpy as np
 import pytest
 from corpus import bad_files
 from hypothesis import HealthCheck, given, settings, strategies as st
+from orbiframe_polygons.threemf_reader import MODEL, RELATIONS
+from orbiframe_polygons.threemf_writer import RELATION
 
 from orbiframe import FormatError, formats
 from orbiframe.registry import Registry
@@ -26,6 +30,28 @@ VALID = {
     "text.stl": bad_files.STL.encode(),
     "binary.stl": bad_files.records(bad_files.FACETS),
 }
+
+
+def archive() -> bytes:
+    """A 3MF file of a tetrahedron, not compressed, so that damage reaches the model."""
+    vertices = "".join(f'<vertex x="{x}" y="{y}" z="{z}"/>' for x, y, z in bad_files.CORNERS)
+    triangles = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in bad_files.TETRAHEDRON)
+    mesh = f"<mesh><vertices>{vertices}</vertices><triangles>{triangles}</triangles></mesh>"
+    build = '<build><item objectid="1" transform="1 0 0 0 1 0 0 0 1 0 0 5"/></build>'
+    model = f'<model><resources><object id="1">{mesh}</object></resources>{build}</model>'
+    memory = io.BytesIO()
+    with zipfile.ZipFile(memory, "w") as file:
+        file.writestr(RELATIONS, RELATION)
+        file.writestr(MODEL, model)
+    return memory.getvalue()
+
+
+VALID["model.3mf"] = archive()
+VALID["mixed.xdmf"] = b"""<Xdmf Version="3.0"><Domain><Grid>
+<Geometry GeometryType="XYZ"><DataItem Dimensions="4 3" Format="XML">
+0 0 0  1 0 0  0 1 0  0 0 1 </DataItem></Geometry>
+<Topology TopologyType="Mixed"><DataItem Format="XML">4 0 2 1
+5 0 1 2 3  3 3 1 2 3</DataItem></Topology></Grid></Domain></Xdmf>"""
 # What is worth putting in: ends of lines, signs, numbers that are none, and bytes of any kind.
 PIECES = st.one_of(
     st.sampled_from(
