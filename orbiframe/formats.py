@@ -260,7 +260,8 @@ def distinct_vertices(polyhedron: Polyhedron) -> NDArray[np.intp]:
     """How many different vertices each face has, (F,)."""
     if polyhedron.is_triangular:
         a, b, c = polyhedron.triangles.T
-        return 1 + (a != b) + ((c != a) & (c != b)).astype(np.intp)
+        different: NDArray[np.intp] = 1 + (a != b) + ((c != a) & (c != b)).astype(np.intp)
+        return different
     count = np.zeros(polyhedron.face_count, dtype=np.intp)
     for size in np.unique(polyhedron.face_sizes[polyhedron.face_sizes > 0]).tolist():
         faces = np.flatnonzero(polyhedron.face_sizes == size)
