@@ -118,7 +118,7 @@ def test_all_that_a_polyhedron_has_survives(tmp_path):
         assert np.array_equal(getattr(found, table), getattr(made, table)), table
 
 
-def test_faces_beyond_the_declared_ones_are_left_out_with_a_warning(tmp_path: Path) -> None:
+def test_faces_beyond_the_declared_ones_are_left_out_with_a_warning(tmp_path):
     path = tmp_path / "more.off"
     path.write_text(PLAIN.replace("4 4 6", "4 3 6"))
     with pytest.warns(UserWarning, match="line 10: 1 face line more than the 3"):
