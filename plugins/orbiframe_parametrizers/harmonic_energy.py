@@ -126,8 +126,8 @@ class HarmonicEnergy:
             a * mixed + b * tail[:, :, None] * head[:, None, :],
         )
 
-    def newton_step(self, points: Floats) -> tuple[Floats, float]:
-        """The Newton step in the frames at the points, (V, 2), and the decrement g^T H^-1 g.
+    def newton_step(self, points: Floats, tolerance: float = 1e-8) -> tuple[Floats, float]:
+        """The Newton step in the frames at the points, (V, 2), and the decrement g^T H^-1 g, to a relative tolerance.
 
         The real system of size 2V is solved by conjugate gradients. The preconditioner is the complex linear part of
         the Hessian, one Hermitian system of size V, four times cheaper to factor than the real one; without a
@@ -139,7 +139,7 @@ class HarmonicEnergy:
         solve = self._hermitian_solver(terms) if self.complex else factorised(hessian).solve
         shape = (2 * self.count, 2 * self.count)
         inverse = LinearOperator(shape, matvec=lambda r: solve(r.ravel()), dtype=np.float64)
-        answer, _ = cg(hessian.tocsr(), right, rtol=1e-8, maxiter=100, M=inverse)
+        answer, _ = cg(hessian.tocsr(), right, rtol=tolerance, maxiter=100, M=inverse)
         return answer.reshape(-1, 2)[self.elimination.place], float(right @ answer)
 
     def gradient(self, terms: Terms) -> Floats:

@@ -20,7 +20,7 @@ def with_relations(geometry: Geometry, transition: Ints, isometry: Floats) -> Fl
 
     transition: (H,), three for each triangle; isometries come in pairs of inverses 2k + 1, 2k + 2 after the identity.
     Each free one is multiplied by exp(xi); the relations are linear in xi up to second order, and the least xi is
-    found by LSQR, twice or as long as the defect falls (Gauss-Newton).
+    found by LSQR to eight digits, again as long as the defect falls (Gauss-Newton).
     """
     relations = _distinct_relations(transition)
     if not len(relations):
@@ -68,7 +68,7 @@ def _corrected(geometry: Geometry, relations: Ints, isometry: Floats) -> Floats:
     free = (len(isometry) - 1) // 2
     shape = (3 * len(relations), 3 * free)
     matrix = coo_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape).tocsr()
-    xi = lsqr(matrix, -residual.ravel(), atol=1e-15, btol=1e-15, iter_lim=20000)[0].reshape(-1, 3)
+    xi = lsqr(matrix, -residual.ravel(), atol=1e-8, btol=1e-8, iter_lim=20000)[0].reshape(-1, 3)
     moved = geometry.nearest_isometry(isometry[1::2] @ (np.eye(3) + _algebra(geometry, xi)))
     corrected = isometry.copy()
     corrected[1::2], corrected[2::2] = moved, geometry.inverse(moved)
