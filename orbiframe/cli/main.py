@@ -15,6 +15,7 @@ from orbiframe.errors import OrbiframeError, UsageError
 from orbiframe.registry import Registry
 
 INTERRUPTED = 130
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 EPILOG = "exit status: 0 done; 1 the data or the mathematics do not allow it; 2 wrong usage or configuration"
 
 
@@ -25,6 +26,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     are one sentence on the standard error stream, with a traceback only after `--debug`.
     """
     arguments = sys.argv[1:] if argv is None else list(argv)
+    _fix_threads()
     with warnings.catch_warnings():
         debug = "--debug" in arguments
         _show_warnings_of_users(debug)
@@ -36,6 +38,15 @@ def main(argv: Sequence[str] | None = None) -> int:
             return _close_quietly()
         except (Exception, KeyboardInterrupt) as error:
             return _report(error, debug)
+
+
+def _fix_threads() -> None:
+    """One thread for linear algebra unless the user says otherwise, before numpy is imported.
+
+    The last digits of a result depend on the number of threads, and small blocks in sparse factors only wait for them.
+    """
+    for name in THREADS:
+        os.environ.setdefault(name, "1")
 
 
 def _run(arguments: list[str]) -> int:
