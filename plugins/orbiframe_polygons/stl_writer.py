@@ -48,7 +48,7 @@ def _require_triangles(path: Path, polyhedron: Polyhedron) -> None:
     if len(larger):
         raise FormatError(
             f"{path}: STL holds triangles only, but face {larger[0]} has {polyhedron.face_sizes[larger[0]]} corners "
-            f"({len(larger)} such faces); write OFF, OBJ or PLY, or triangulate it first (orbiframe convert --triangulate)"
+            f"({len(larger)} such faces); write OFF, OBJ or PLY, or triangulate it first (convert --triangulate)"
         )
 
 

@@ -36,7 +36,7 @@ def write(path: Path, polyhedron: Polyhedron) -> None:
     if len(larger):
         raise FormatError(
             f"{path}: 3MF holds triangles only, but face {larger[0]} has {polyhedron.face_sizes[larger[0]]} corners "
-            f"({len(larger)} such faces); write OFF, OBJ or PLY, or triangulate the polyhedron first"
+            f"({len(larger)} such faces); write OFF, OBJ or PLY, or triangulate it first (convert --triangulate)"
         )
     tell_loss(path, "colours", polyhedron.colors is not None or polyhedron.face_colors is not None)
     tell_loss(path, "normals of vertices", polyhedron.normals is not None)
