@@ -24,7 +24,7 @@ def write(path: Path, polyhedron: Polyhedron, *, seconds: float = 60.0) -> None:
     if len(larger):
         raise FormatError(
             f"{path}: this format holds triangles only, but face {larger[0]} has {polyhedron.face_sizes[larger[0]]} "
-            f"corners ({len(larger)} such faces); write OFF, OBJ or PLY, or triangulate it first (convert --triangulate)"
+            f"corners ({len(larger)} such faces); write OFF, OBJ or PLY, or use convert --triangulate"
         )
     if any(table is not None for table in (polyhedron.normals, polyhedron.colors, polyhedron.face_colors)):
         warnings.warn(f"{path.name}: normals and colours are left out; PLY keeps them", stacklevel=2)
