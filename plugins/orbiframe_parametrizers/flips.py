@@ -6,11 +6,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from orbiframe import Polyhedron
+from orbiframe import MapError, Polyhedron
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
+
+_FLIPS_PER_SLOT = 4
 
 
 class Flippable:
@@ -52,8 +54,12 @@ class Flippable:
 
         flat: the triangles are Euclidean and a new edge is the diagonal of their flat quadrilateral, so that the
         polyhedral metric stays; otherwise Ptolemy's relation gives it, so that the discrete conformal class stays.
+        Raises MapError where triangles are so thin that rounding would flip for ever.
         """
-        moves = _make_delaunay(self.tail, self.twin, self.same, self.x, flat)
+        limit = _FLIPS_PER_SLOT * len(self.tail)
+        moves = _make_delaunay(self.tail, self.twin, self.same, self.x, flat, limit)
+        if len(moves) >= limit:
+            raise MapError("the triangles are too thin to flip their edges in double precision; use circle packing")
         self.log = np.concatenate([self.log, moves])
 
     def mesh(self) -> Polyhedron:
@@ -72,12 +78,12 @@ class Flippable:
         return forth
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _following(h: int) -> int:
     return h + 1 if h % 3 < 2 else h - 2
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _cosine_sum(x: Floats, h: int, t: int) -> float:
     """Twice the sum of the two opposite cosines in terms of x; negative where the edge is not Delaunay."""
     e, a, b = x[h], x[_following(h)], x[_following(_following(h))]
@@ -85,7 +91,7 @@ def _cosine_sum(x: Floats, h: int, t: int) -> float:
     return float((a * a + b * b - e * e) / (a * b) + (c * c + d * d - e * e) / (c * d))
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _reverse_face(tail: Ints, twin: Ints, same: Bools, x: Floats, face: int) -> None:
     """Run through a face the other way: slot 0 keeps its edge, slots 1 and 2 exchange theirs."""
     s, first, second = 3 * face, 3 * face + 1, 3 * face + 2
@@ -105,7 +111,7 @@ def _reverse_face(tail: Ints, twin: Ints, same: Bools, x: Floats, face: int) -> 
             same[partner] = not flags[k]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _flat_diagonal(e: float, ik: float, jk: float, im: float, jm: float) -> float:
     """The distance of k and m on both sides of an edge i-j of length e in the plane."""
     along_k, along_m = (ik * ik - jk * jk + e * e) / (2 * e), (im * im - jm * jm + e * e) / (2 * e)
@@ -113,7 +119,7 @@ def _flat_diagonal(e: float, ik: float, jk: float, im: float, jm: float) -> floa
     return float(np.hypot(along_k - along_m, np.sqrt(above) + np.sqrt(below)))
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _flip(tail: Ints, twin: Ints, same: Bools, x: Floats, h: int, flat: bool) -> None:
     """Replace the edge i-j in slot h by k-m: faces (i, j, k) and (j, i, m) become (m, k, i) and (k, m, j)."""
     t = twin[h]
@@ -142,15 +148,15 @@ def _flip(tail: Ints, twin: Ints, same: Bools, x: Floats, h: int, flat: bool) ->
     x[h] = x[t] = x_new
 
 
-@njit(cache=True)
-def _make_delaunay(tail: Ints, twin: Ints, same: Bools, x: Floats, flat: bool) -> Ints:
+@njit(cache=True, error_model="numpy")
+def _make_delaunay(tail: Ints, twin: Ints, same: Bools, x: Floats, flat: bool, limit: int) -> Ints:
     size = len(tail)
     queue = [h for h in range(size) if h < twin[h]]
     waiting = np.zeros(size, dtype=np.bool_)
     for h in queue:
         waiting[h] = True
     log = [(0, 0) for _ in range(0)]
-    while queue:
+    while queue and len(log) < limit:
         h = queue.pop()
         waiting[h] = False
         t = twin[h]
@@ -176,7 +182,7 @@ def _make_delaunay(tail: Ints, twin: Ints, same: Bools, x: Floats, flat: bool) -
     return moves
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _undo(tail: Ints, twin: Ints, same: Bools, log: Ints, forth: Floats, back: Floats) -> None:
     """Undo the moves, last first; the matrices follow their halfedges, and each new one is a product of two."""
     idle = np.ones(len(tail))
@@ -213,7 +219,7 @@ def _undo(tail: Ints, twin: Ints, same: Bools, log: Ints, forth: Floats, back: F
         forth[t], back[t] = reverse, product
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _unflip(
     tail: Ints, twin: Ints, same: Bools, forth: Floats, back: Floats, h: int, t: int, hn: int, hp: int, tn: int, tp: int
 ) -> None:

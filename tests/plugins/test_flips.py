@@ -8,7 +8,7 @@ from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
 from orbiframe_parametrizers.flips import Flippable
 
-from orbiframe import Polyhedron, surface_type
+from orbiframe import MapError, Polyhedron, surface_type
 from orbiframe.diagonals import triangulated
 from orbiframe.refinement import refine
 from orbiframe.testing.polyhedra import reference_polyhedra
@@ -95,3 +95,19 @@ def test_ptolemy_flip_of_a_cyclic_quadrilateral_is_its_other_diagonal() -> None:
     e, f = np.linalg.norm(ring[0] - ring[2]), np.linalg.norm(ring[1] - ring[3])
     assert (a * c + b * d) / e == pytest.approx(f, rel=1e-14)
     assert (a * b + c * d) / e != pytest.approx(f, rel=1e-3)
+
+
+@pytest.mark.parametrize("flat", [1e-6, 1e-12, 1e-200])
+def test_flips_of_triangles_without_height_end(flat: float) -> None:
+    """They end with a triangulation or with a clear error, and never go on for ever; all are bounded by the limit."""
+    mesh = mesh_of("double torus", 3)
+    mesh = mesh.with_vertices(mesh.vertices * np.array([flat, 1.0, 1.0]))
+    state = Flippable(mesh, mesh.edge_lengths)
+    try:
+        state.make_delaunay(flat=True)
+        for _ in range(20):
+            state = state.scaled(np.random.default_rng(5).normal(size=len(mesh.vertices)) * 20)
+    except MapError as error:
+        assert "too thin" in str(error)
+    require_twins(state.mesh())
+    assert surface_type(state.mesh()) == surface_type(mesh)
