@@ -65,8 +65,9 @@ def _records(path: Path, polyhedron: Polyhedron, first: int) -> NDArray[np.void]
 
 def _require_single(path: Path, corners: NDArray[np.float32], first: int) -> None:
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    equal = (a == b).all(axis=1) | (b == c).all(axis=1) | (c == a).all(axis=1)
-    bad = np.flatnonzero(equal | ~np.isfinite(corners).all(axis=(1, 2)))
+    equal = _equal(a, b) | _equal(b, c) | _equal(c, a)
+    finite = np.isfinite(corners.reshape(-1, 9))
+    bad = np.flatnonzero(equal if finite.all() else equal | ~finite.all(axis=1))
     if len(bad):
         raise FormatError(
             f"{path}: the corners of face {first + bad[0]} are equal or infinite in float32, which is all that binary "
@@ -74,11 +75,19 @@ def _require_single(path: Path, corners: NDArray[np.float32], first: int) -> Non
         )
 
 
+def _equal(a: NDArray[np.float32], b: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """Whether points (n, 3) coincide; by columns, which is several times quicker than along rows of three."""
+    same: NDArray[np.bool_] = (a[:, 0] == b[:, 0]) & (a[:, 1] == b[:, 1]) & (a[:, 2] == b[:, 2])
+    return same
+
+
 def _normals(corners: Floats) -> Floats:
-    """Unit normals of triangles (n, 3, 3); zero where the area is zero."""
-    sides = corners[:, 1:] - corners[:, :1]
-    sides /= np.maximum(np.abs(sides).max(axis=(1, 2), keepdims=True), np.finfo(np.float64).tiny)
-    normal = np.cross(sides[:, 0], sides[:, 1])
-    length = np.linalg.norm(normal, axis=1, keepdims=True)
+    """Unit normals of triangles (n, 3, 3); zero where the area is zero. By columns, see `_equal`."""
+    u, v = (np.ascontiguousarray((corners[:, k] - corners[:, 0]).T) for k in (1, 2))
+    largest = np.maximum(np.abs(u), np.abs(v))
+    scale = np.maximum(np.maximum(largest[0], largest[1]), np.maximum(largest[2], np.finfo(np.float64).tiny))
+    u, v = u / scale, v / scale
+    normal = np.stack([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]])
+    length = np.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)
     unit: Floats = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
-    return unit
+    return unit.T
