@@ -53,7 +53,7 @@ def sphere(
     if not embedded:
         raise MapError(
             "the map to the sphere has folded triangles: parts of the mesh are too long and thin for double precision; "
-            "shorten them, or refine the mesh (map.vertices)"
+            "shorten them, or refine the mesh"
         )
     best = min(embedded, key=lambda result: float(np.median(result.angle_distortion)))
     return best if group is None else replace(best, group=group.source)
