@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
-from orbiframe_parametrizers.flips import Flippable
+from orbiframe_parametrizers.flips import Flippable, _flip
 
 from orbiframe import MapError, Polyhedron, surface_type
 from orbiframe.diagonals import triangulated
@@ -89,14 +89,19 @@ def test_flat_flips_of_a_planar_grid_give_true_distances() -> None:
     np.testing.assert_allclose(state.x[kept], straight[kept], rtol=1e-12)
 
 
-def test_ptolemy_flip_of_a_cyclic_quadrilateral_is_its_other_diagonal() -> None:
-    """Points on a circle: Ptolemy's relation is the flat diagonal, so that both kinds of flips agree (mutant: sum)."""
+@pytest.mark.parametrize("flat", [False, True])
+def test_flip_in_a_cyclic_quadrilateral_gives_its_other_diagonal(flat: bool) -> None:
+    """Points on a circle: Ptolemy's relation is the flat diagonal, so that both kinds of flips agree."""
     angle = np.array([0.0, 0.7, 2.0, 4.0])
     ring = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(4)])
-    a, b, c, d = (np.linalg.norm(ring[i] - ring[(i + 1) % 4]) for i in range(4))
-    e, f = np.linalg.norm(ring[0] - ring[2]), np.linalg.norm(ring[1] - ring[3])
-    assert (a * c + b * d) / e == pytest.approx(f, rel=1e-14)
-    assert (a * b + c * d) / e != pytest.approx(f, rel=1e-3)
+    faces = np.array([[0, 2, 1], [0, 3, 2], [0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
+    state = Flippable(Polyhedron.from_faces(np.vstack([ring, [0.0, 0.0, 1.0]]), faces), np.zeros(18))
+    pyramid = state.mesh()
+    state.x = pyramid.edge_lengths
+    _flip(state.tail, state.twin, state.same, state.x, 0, flat)
+    require_twins(state.mesh())
+    assert {int(state.mesh().tail[0]), int(state.mesh().head[0])} == {1, 3}
+    assert state.x[0] == pytest.approx(np.linalg.norm(ring[1] - ring[3]), rel=1e-14)
 
 
 @pytest.mark.parametrize("flat", [1e-6, 1e-12, 1e-200])
