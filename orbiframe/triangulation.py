@@ -38,7 +38,7 @@ class Triangulation:
     weights: str = "none"
 
     @cached_property
-    def _corner_transitions(self) -> Ints:
+    def corner_transitions(self) -> Ints:
         """The transition from the frame of the first corner of each triangle to that of each corner, (F, 3)."""
         t = self.transition.reshape(-1, 3)
         return np.stack([np.zeros_like(t[:, 0]), t[:, 0], self.orbifold.atlas.inverse[t[:, 2]]], axis=1)
@@ -46,7 +46,7 @@ class Triangulation:
     @cached_property
     def lifts(self) -> Floats:
         """The corners of every triangle in the frame of the patch of its first corner, (F, 3, 3): [face, corner]."""
-        g = self.orbifold.atlas.isometry[self._corner_transitions]
+        g = self.orbifold.atlas.isometry[self.corner_transitions]
         return np.asarray(np.einsum("fcij,fcj->fci", g, self.points[self.polyhedron.triangles]))
 
     def locate(self, face: Ints, barycentric: Floats) -> Points:
@@ -66,7 +66,7 @@ class Triangulation:
         """
         p, count = self.polyhedron, self.polyhedron.face_count
         parity = np.sign(np.linalg.det(self.orbifold.atlas.isometry))
-        corner_sign = parity[self._corner_transitions].ravel()
+        corner_sign = parity[self.corner_transitions].ravel()
         here = np.arange(len(p.tail))
         there = np.where(p.same, p.twin, p.next[p.twin])
         turned = corner_sign[here] * corner_sign[there] * np.where(p.same, -1, 1) < 0
