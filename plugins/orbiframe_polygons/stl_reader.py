@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import re
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from orbiframe import FormatError, Polyhedron
 from orbiframe_polygons.faces import require_finite
-from orbiframe_polygons.text import Text, plain, shown, table
+from orbiframe_polygons.text import MARK, Text, shown, table, with_line_feeds
 from orbiframe_polygons.weld import welded
 
 Floats = NDArray[np.floating]
@@ -31,8 +32,8 @@ def _code(word: bytes) -> np.uint64:
 
 
 SOLID, ENDSOLID = _code(b"solid"), _code(b"endsolid")
-# Bytes of text that are looked at together.
-BLOCK = 2**24
+# Bytes at an end that tell whether a file is text, and bytes of text that are looked at together.
+SAMPLE, BLOCK = 2**16, 2**24
 
 
 def read(path: Path) -> Polyhedron:
@@ -43,80 +44,119 @@ def read(path: Path) -> Polyhedron:
 
     Source: 3D Systems, StereoLithography Interface Specification, 1988.
     """
-    data = path.read_bytes()
-    corners = _binary(path, data) if _is_binary(data) else _ascii(path, data)
+    corners = _binary(path) if _is_binary(path) else _ascii(path)
     if not len(corners):
         raise FormatError(f"{path}: the file holds no triangles")
     vertices, tail = welded(corners)
+    del corners
     return Polyhedron.from_faces(vertices, tail.reshape(-1, 3))
 
 
-def _is_binary(data: bytes) -> bool:
-    if len(data) < HEADER_SIZE:
-        return False
-    return len(data) == HEADER_SIZE + RECORD_SIZE * int.from_bytes(data[80:84], "little")
+def _is_binary(path: Path) -> bool:
+    start = _start(path, HEADER_SIZE)
+    size = HEADER_SIZE + RECORD_SIZE * int.from_bytes(start[80:84], "little")
+    return len(start) == HEADER_SIZE and path.stat().st_size == size
 
 
-def _binary(path: Path, data: bytes) -> Floats:
-    corners: Floats = np.frombuffer(data, RECORD, offset=HEADER_SIZE)["corners"]
+def _start(path: Path, size: int) -> bytes:
+    with path.open("rb") as file:
+        return file.read(size)
+
+
+def _binary(path: Path) -> Floats:
+    corners: Floats = np.frombuffer(path.read_bytes(), RECORD, offset=HEADER_SIZE)["corners"]
     require_finite(corners.reshape(-1, 9), lambda k: f"{path}, byte {HEADER_SIZE + RECORD_SIZE * k}")
     return corners
 
 
-def _ascii(path: Path, data: bytes) -> Floats:
-    _require_text(path, data)
-    content = plain(path, data)
+def _ascii(path: Path) -> Floats:
+    _require_text(path)
     try:
-        return _by_lines(path, content)
+        return _corners(path, _pieces(path))
     except FormatError:
         # Words may be broken into lines anyhow; where they do not even then make facets, the first reason stands.
-        if b"endsolid" not in content.rstrip().rpartition(b"\n")[2].lower():
+        if not _ends_in_order(path):
             raise
-        loose = BREAK.sub(b"\n", SPACE.sub(b" ", content))
         with contextlib.suppress(FormatError):
-            return _by_lines(path, loose)
+            return _corners(path, _pieces(path, _facet_lines))
         raise
 
 
-def _by_lines(path: Path, content: bytes) -> Floats:
-    """The corners of all facets, (n, 3, 3), from blocks of the text, so that its lines take little memory."""
-    corners, at, line, inside = [], 0, 1, 0
-    while at < len(content):
-        end = _block_end(content, at)
-        text = table(path, content[at:end], line=line)
+def _ends_in_order(path: Path) -> bool:
+    """Whether the end of a solid is in the last line, so that nothing comes after it."""
+    with path.open("rb") as file:
+        file.seek(max(0, path.stat().st_size - SAMPLE))
+        end = file.read().replace(b"\r", b"\n").rstrip()
+    return b"endsolid" in end.rpartition(b"\n")[2].lower()
+
+
+def _require_text(path: Path) -> None:
+    start = _start(path, SAMPLE)
+    if start[:512].lstrip(b"\xef\xbb\xbf \t\r\n")[:5].lower() == b"solid" and b"\0" not in start:
+        return
+    if len(start) < HEADER_SIZE:
+        raise FormatError(
+            f"{path}: found {shown(start[:16])}; an STL file starts with 'solid' or has 84 bytes at least"
+        )
+    count = int.from_bytes(start[80:84], "little")
+    raise FormatError(
+        f"{path}, byte 80: the count {count} of triangles asks for {HEADER_SIZE + RECORD_SIZE * count} bytes, but the "
+        f"file has {path.stat().st_size}; it is cut short, goes on after its end, or is no STL file"
+    )
+
+
+# ---- text ---------------------------------------------------------------------------------------------------------
+
+
+def _pieces(path: Path, shaped: Callable[[bytes], bytes] = bytes) -> Iterator[tuple[bytes, bool]]:
+    """The text in pieces of whole facets, so that its lines take little memory, and whether a piece is the last.
+
+    shaped: gives a piece its lines.
+    """
+    with path.open("rb") as file:
+        rest, line = file.read(len(MARK)).removeprefix(MARK), 1
+        while more := file.read(BLOCK):
+            while more.endswith(b"\r") and (after := file.read(1)):  # a LF after it belongs to a CR
+                more += after
+            rest = shaped(rest + with_line_feeds(path, more, line=line + rest.count(b"\n")))
+            end = _facets_end(rest)
+            yield rest[:end], False
+            line += rest.count(b"\n", 0, end)
+            rest = rest[end:]
+        yield rest, True
+
+
+def _facets_end(content: bytes) -> int:
+    """The end of the last line that ends a facet."""
+    facet = max(content.rfind(word) for word in (b"endfacet", b"ENDFACET"))
+    return content.find(b"\n", facet) + 1 if facet >= 0 else 0
+
+
+def _facet_lines(content: bytes) -> bytes:
+    """The words of a text in the lines that facets have."""
+    return BREAK.sub(b"\n", SPACE.sub(b" ", content))
+
+
+def _corners(path: Path, pieces: Iterator[tuple[bytes, bool]]) -> Floats:
+    """The corners of all facets, (n, 3, 3), from pieces of text that say whether they are the last."""
+    corners, line, inside = [np.empty((0, 3, 3))], 1, 0
+    for piece, last in pieces:
+        text = table(path, piece, line=line)
         keyword = _keywords(text)
         mark = np.isin(keyword, SOLID).astype(np.intp) - np.isin(keyword, ENDSOLID)
         inside = _require_solids(text, mark, inside)
-        if inside and end == len(content):
-            text.refuse(len(text) - 1, "the file ends before 'endsolid'; is it cut short?")
-        facets = text.only(mark == 0)
-        _require_facets(facets, keyword[mark == 0])
-        vertices = facets.only(np.isin(np.arange(len(facets)) % len(FACET), (2, 3, 4)))
-        corners.append(vertices.without_keyword(len(b"vertex")).numbers().reshape(-1, 3, 3))
-        line += content.count(b"\n", at, end)
-        at = end
+        end = line + piece.count(b"\n")
+        if last and inside:
+            raise FormatError(f"{path}, line {end}: the file ends before 'endsolid'; is it cut short?")
+        corners.append(_facets(text.only(mark == 0), keyword[mark == 0]))
+        line = end
     return np.concatenate(corners)
 
 
-def _block_end(content: bytes, at: int) -> int:
-    """The end of a line that ends a facet, or of the text."""
-    if len(content) - at <= BLOCK:
-        return len(content)
-    facet = max(content.rfind(word, at, at + BLOCK) for word in (b"endfacet", b"ENDFACET"))
-    newline = content.find(b"\n", facet) if facet > at else -1
-    return newline + 1 or len(content)
-
-
-def _require_text(path: Path, data: bytes) -> None:
-    if data[:512].lstrip(b"\xef\xbb\xbf \t\r\n")[:5].lower() == b"solid" and b"\0" not in data:
-        return
-    if len(data) < HEADER_SIZE:
-        raise FormatError(f"{path}: found {shown(data[:16])}; an STL file starts with 'solid' or has 84 bytes at least")
-    count = int.from_bytes(data[80:84], "little")
-    raise FormatError(
-        f"{path}, byte 80: the count {count} of triangles asks for {HEADER_SIZE + RECORD_SIZE * count} bytes, but the "
-        f"file has {len(data)}; it is cut short, goes on after its end, or is no STL file"
-    )
+def _facets(lines: Text, keyword: Codes) -> Floats:
+    _require_facets(lines, keyword)
+    vertices = lines.only(np.isin(np.arange(len(lines)) % len(FACET), (2, 3, 4)))
+    return vertices.without_keyword(len(b"vertex")).numbers().reshape(-1, 3, 3)
 
 
 def _keywords(text: Text) -> Codes:

@@ -19,6 +19,8 @@ Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
 NEWLINE, BLANK, CONTINUED = 10, 32, 11
+# The byte order mark of UTF-8.
+MARK = b"\xef\xbb\xbf"
 FEW = 100
 
 
@@ -137,11 +139,15 @@ def plain(path: Path, data: bytes, *, line: int = 1) -> bytes:
     """
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise FormatError(f"{path}: the text is UTF-16; save it as UTF-8")
+    return with_line_feeds(path, data.removeprefix(MARK), line=line)
+
+
+def with_line_feeds(path: Path, data: bytes, *, line: int = 1) -> bytes:
+    """A part of a text, from a line on, with LF at the end of each line. Raises FormatError for zero bytes."""
     if b"\0" in data:
         line += data[: data.index(b"\0")].count(b"\n")
         raise FormatError(f"{path}, line {line}: found a zero byte, but a text file is required; is the file binary?")
-    data = data.removeprefix(b"\xef\xbb\xbf").replace(b"\v", b" ")
-    return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    return data.replace(b"\v", b" ").replace(b"\r\n", b"\n").replace(b"\r", b"\n")
 
 
 def table(path: Path, data: bytes, *, line: int = 1) -> Text:

@@ -134,3 +134,15 @@ def test_text_read_in_blocks(tmp_path, monkeypatch, size):
         read(of(tmp_path, PLAIN.replace("vertex 1 0 0\n  vertex 0 1 0\n", "vertex 1 0 0\n  vertex 0 one 0\n")))
     with pytest.raises(FormatError, match=r"line 24.*outside"):
         read(of(tmp_path, PLAIN + "facet\n"))
+
+
+def test_line_ends_and_words_across_pieces(tmp_path, monkeypatch):
+    expected = read(of(tmp_path, PLAIN))
+    loose = "solid " + "\r\n".join(PLAIN.split()[3:-3]) + "\r\nendsolid"
+    for size in (7, 20, 64):
+        monkeypatch.setattr(stl_reader, "BLOCK", size)
+        for content in (PLAIN.replace("\n", "\r\n"), PLAIN.replace("\n", "\r"), loose):
+            found = read(of(tmp_path, content))
+            assert np.array_equal(found.tail, expected.tail)
+        with pytest.raises(FormatError, match=r"line 5.*'one'"):
+            read(of(tmp_path, PLAIN.replace("vertex 0 1 0", "vertex 0 one 0").replace("\n", "\r\n")))
