@@ -48,6 +48,47 @@ class Bisection:
             active = active[self.side[node[active]] >= 0]
         return self.child[node], weights
 
+    def composed(self, steps: Floats) -> Floats:
+        """Products along the halfedges of the coarse mesh, (3F, k, k), of matrices on those of the fine one.
+
+        steps: (H, k, k), such as the isometry from the frame at the head of a halfedge to that at its tail.
+        """
+        node = np.zeros((len(self.side), 3, *steps.shape[1:]))
+        leaf = np.flatnonzero(self.side < 0)
+        node[leaf] = steps.reshape(-1, 3, *steps.shape[1:])[self.child[leaf]]
+        for parents in reversed(self._levels()):
+            side, first = self.side[parents], node[self.child[parents]]
+            second = node[self.child[parents] + 1]
+            node[parents, side] = first[:, 0] @ second[:, 0]
+            node[parents, (side + 1) % 3] = second[:, 1]
+            node[parents, (side + 2) % 3] = first[:, 2]
+        return node[: self.coarse.face_count].reshape(-1, *steps.shape[1:])
+
+    def spread(self, corners: Floats) -> Floats:
+        """Values at the corners of the coarse triangles, (F, 3, k), linearly at the corners of the fine ones."""
+        node = np.zeros((len(self.side), 3, corners.shape[2]))
+        node[: len(corners)] = corners
+        for parents in self._levels():
+            side = self.side[parents]
+            a, b, c = (node[parents, (side + k) % 3] for k in range(3))
+            middle = (a + b) / 2
+            node[self.child[parents]] = np.stack([a, middle, c], axis=1)
+            node[self.child[parents] + 1] = np.stack([middle, b, c], axis=1)
+        leaf = np.flatnonzero(self.side < 0)
+        fine = np.empty((len(leaf), 3, corners.shape[2]))
+        fine[self.child[leaf]] = node[leaf]
+        return fine
+
+    def _levels(self) -> list[Ints]:
+        """The nodes of the forest that are halved, those of each depth together, roots first."""
+        levels = []
+        node = np.flatnonzero(self.side[: self.coarse.face_count] >= 0)
+        while len(node):
+            levels.append(node)
+            below = np.concatenate([self.child[node], self.child[node] + 1])
+            node = below[self.side[below] >= 0]
+        return levels
+
 
 def bisected(polyhedron: Polyhedron, longest: float) -> Bisection:
     """The triangle mesh with edges halved until none is longer than `longest`; flat, watertight, same surface.

@@ -32,7 +32,7 @@ def triangulated(polyhedron: Polyhedron) -> Polyhedron:
     if len(small):
         corners = polyhedron.face_sizes[small[0]]
         raise TopologyError(f"face {small[0]} has {corners} corners, a polygon needs three; remove it from the mesh")
-    return _glued(polyhedron, _triangle_corners(polyhedron))
+    return _glued(polyhedron, triangle_corners(polyhedron))
 
 
 def triangle_owner(polyhedron: Polyhedron) -> Ints:
@@ -40,8 +40,20 @@ def triangle_owner(polyhedron: Polyhedron) -> Ints:
     return np.repeat(np.arange(polyhedron.face_count), polyhedron.face_sizes - 2)
 
 
-def _triangle_corners(polyhedron: Polyhedron) -> Ints:
-    """Triangles as corner (halfedge) indices of the polyhedron, (T, 3), in the order of the faces."""
+def outline(polyhedron: Polyhedron) -> Ints:
+    """The halfedge of `triangulated(polyhedron)` that is each halfedge of the polyhedron, (H,)."""
+    corners = triangle_corners(polyhedron)
+    start, end = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
+    old = np.flatnonzero(polyhedron.next[start] == end)
+    place = np.empty(len(polyhedron.tail), dtype=np.intp)
+    place[start[old]] = old
+    return place
+
+
+def triangle_corners(polyhedron: Polyhedron) -> Ints:
+    """The triangles of `triangulated(polyhedron)` as corners (halfedges) of the polyhedron, (T, 3)."""
+    if polyhedron.is_triangular:
+        return np.arange(len(polyhedron.tail)).reshape(-1, 3)
     sizes = polyhedron.face_sizes
     first = np.concatenate([[0], np.cumsum(sizes - 2)])
     corners = np.empty((first[-1], 3), dtype=np.intp)
