@@ -26,6 +26,10 @@ MODEL_TYPE = "/3dmodel"
 GROWTH, ROOM = 64, 2**24
 UNSOUND = (zipfile.BadZipFile, zlib.error, RuntimeError, NotImplementedError, EOFError, OSError, ValueError)
 DEPTH = 32
+# Words are kept with the unit separator, which XML cannot hold, after each. To be read it becomes a blank, and blanks
+# inside words become what no number has.
+UNIT, SPACES = "\x1f", " \t\n\v\f\r"
+BLANKS = bytes.maketrans(b"\x1f \t\n\v\f\r", b" ______")
 
 
 def read(path: Path) -> Polyhedron:
@@ -82,8 +86,8 @@ class _Archive:
 @dataclass(slots=True)
 class _Object:
     line: int
-    vertices: list[str] = field(default_factory=list)
-    triangles: list[str] = field(default_factory=list)
+    vertices: bytearray = field(default_factory=bytearray)
+    triangles: bytearray = field(default_factory=bytearray)
     parts: list[tuple[str, str]] = field(default_factory=list)
 
 
@@ -112,9 +116,9 @@ class _Model:
         elif name == "item":
             self.items.append((attributes["objectid"], attributes.get("transform", "")))
         elif now is not None and name == "vertex":
-            now.vertices += attributes["x"], attributes["y"], attributes["z"]
+            now.vertices += _row(attributes["x"], attributes["y"], attributes["z"])
         elif now is not None and name == "triangle":
-            now.triangles += attributes["v1"], attributes["v2"], attributes["v3"]
+            now.triangles += _row(attributes["v1"], attributes["v2"], attributes["v3"])
         elif now is not None and name == "component":
             now.parts.append((attributes["objectid"], attributes.get("transform", "")))
 
@@ -133,7 +137,7 @@ class _Model:
         for part, inner in found.parts:
             meshes += self.built(part, inner, depth + 1)
             self._require_room(meshes)
-        matrix = self._numbers(transform.split(), found).reshape(-1, 3) if transform else np.eye(4, 3)
+        matrix = self._numbers(_row(*transform.split()), found).reshape(-1, 3) if transform else np.eye(4, 3)
         if matrix.shape != (4, 3):
             raise FormatError(f"{self.path}: a transform has {matrix.size} numbers, but 12 are required")
         return [(points @ matrix[:3] + matrix[3], faces) for points, faces in meshes] if transform else meshes
@@ -150,8 +154,16 @@ class _Model:
         sizes = np.full(len(numbers) // 3, 3, dtype=np.intp)
         return points, corners(numbers, sizes, len(points), lambda _: place).reshape(-1, 3)
 
-    def _numbers(self, words: list[str], found: _Object) -> Floats:
-        values = parsed(np.frombuffer(" ".join(words).encode(), dtype=np.uint8), len(words))
-        if values is None or not np.isfinite(values).all() or not all(words):
+    def _numbers(self, words: bytes | bytearray, found: _Object) -> Floats:
+        """Numbers with a unit separator after each."""
+        unit = UNIT.encode()
+        empty = words.startswith(unit) or 2 * unit in words
+        values = parsed(np.frombuffer(words.translate(BLANKS), dtype=np.uint8), words.count(unit))
+        if values is None or empty or not np.isfinite(values).all():
             raise FormatError(f"{self.path}, object at line {found.line}: a word is no finite decimal number")
         return values
+
+
+def _row(*words: str) -> bytes:
+    """Words of numbers as a part of a text, which takes less memory than words."""
+    return "".join([word.strip(SPACES) + UNIT for word in words]).encode()
