@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from orbiframe.errors import TopologyError
 from orbiframe.polyhedron import Polyhedron
-from orbiframe.topology import vector_areas
+from orbiframe.topology import doubled_edges, vector_areas
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -90,19 +90,23 @@ class Bisection:
         return levels
 
 
-def bisected(polyhedron: Polyhedron, longest: float) -> Bisection:
+def bisected(polyhedron: Polyhedron, longest: float, simplicial: bool = False) -> Bisection:
     """The triangle mesh with edges halved until none is longer than `longest`; flat, watertight, same surface.
+
+    simplicial: loops are halved too, and edges that share both ends with another one, until none is left; a map to X/H
+    that is linear on each triangle needs that (see `doubled_edges`).
 
     An edge is halved when it is the longest of both its triangles, so that long thin triangles become rounder and no
     angle falls below half the least one of the mesh (Rivara 1984, 1997: longest-edge propagation). Deterministic:
-    of equal edges the one with the larger index is halved first. Raises TopologyError for an open mesh, or a length
+    of equal edges the one with the larger index is halved first. A face that meets itself along an edge is halved
+    across its third side first. Raises TopologyError for an open mesh, or a length
     that is not positive.
     """
     if not longest > 0:
         raise TopologyError(f"edges no longer than {longest} were asked for; the length must be positive")
     if (polyhedron.twin < 0).any():
         raise TopologyError("only a closed mesh is refined; `orbiframe info` lists its open edges")
-    state = _State(polyhedron)
+    state = _State(polyhedron, simplicial)
     while len(edges := state.edges_to_halve(longest)):
         state.halve(edges)
     return state.result(polyhedron)
@@ -137,7 +141,8 @@ def _triangles_made(sides: Floats, areas: Floats, longest: float) -> float:
 class _State:
     """The mesh while it is being refined: vertices, triangles, twins, and the forest."""
 
-    def __init__(self, mesh: Polyhedron) -> None:
+    def __init__(self, mesh: Polyhedron, simplicial: bool) -> None:
+        self.made_simplicial = simplicial
         self.vertices = mesh.vertices
         self.triangles = mesh.triangles.copy()
         self.twin, self.same = mesh.twin.copy(), mesh.same.copy()
@@ -146,21 +151,44 @@ class _State:
         self.child = np.arange(mesh.face_count)
 
     def edges_to_halve(self, longest: float) -> Ints:
-        """One halfedge of each edge that is too long and the longest of both its triangles."""
+        """One halfedge of each edge that must be halved and comes first in both its triangles."""
         head = np.roll(self.triangles, -1, axis=1)
         length = np.linalg.norm(self.vertices[head] - self.vertices[self.triangles], axis=2).ravel()
         index = np.arange(len(length))
         edge = np.minimum(index, self.twin)
         # Both halfedges of an edge must compare alike, down to the last bit.
         length = length[edge]
-        if not (length > longest).any():
+        doubled = self._doubled()
+        wanted = (length > longest) | doubled
+        if not wanted.any():
             return index[:0]
+        folded = index // 3 == self.twin // 3
+        first = self._third_sides(folded & wanted)
+        wanted = (wanted & ~folded) | first
+        # Loops go before other doubled edges: without them no face has a vertex twice, and the doubled edges die out.
+        loop = head.ravel() == self.triangles.ravel()
+        urgency = np.where(folded, -1, 4 * first + 2 * (doubled & loop) + doubled)
         rank = np.empty(len(length), dtype=np.intp)
-        rank[np.lexsort((edge, length))] = index
+        rank[np.lexsort((edge, length, urgency))] = index
         rank = np.maximum(rank, rank[self.twin])
         top = np.zeros(len(length), dtype=np.bool_)
         top[3 * np.arange(len(self.triangles)) + rank.reshape(-1, 3).argmax(axis=1)] = True
-        return np.flatnonzero(top & top[self.twin] & (index == edge) & (length > longest))
+        return np.flatnonzero(top & top[self.twin] & (index == edge) & wanted)
+
+    def _doubled(self) -> Bools:
+        """The halfedges that must go from a simplicial complex; once it is one, halving keeps it so."""
+        if not self.made_simplicial:
+            return np.zeros(len(self.twin), dtype=np.bool_)
+        doubled = doubled_edges(self._mesh())
+        self.made_simplicial = bool(doubled.any()) or len(self.triangles) == 2
+        return doubled
+
+    def _third_sides(self, folded: Bools) -> Bools:
+        """The halfedges, with their twins, of the third sides of faces whose other two are one edge, as marked."""
+        index = np.flatnonzero(folded)
+        sides = np.zeros(len(folded), dtype=np.bool_)
+        sides[3 * (index // 3) + 3 - index % 3 - self.twin[index] % 3] = True
+        return sides | sides[self.twin]
 
     def halve(self, edges: Ints) -> None:
         """Put a vertex in the middle of each edge and halve the two triangles beside it."""
@@ -208,7 +236,9 @@ class _State:
             same[mine] = same[theirs] = parallel
         self.twin, self.same = twin, same
 
-    def result(self, coarse: Polyhedron) -> Bisection:
+    def _mesh(self) -> Polyhedron:
         offsets = np.arange(len(self.triangles) + 1) * 3
-        fine = Polyhedron(self.vertices, offsets, self.triangles.ravel(), self.twin, self.same)
-        return Bisection(coarse, fine, self.side, self.child)
+        return Polyhedron(self.vertices, offsets, self.triangles.ravel(), self.twin, self.same)
+
+    def result(self, coarse: Polyhedron) -> Bisection:
+        return Bisection(coarse, self._mesh(), self.side, self.child)

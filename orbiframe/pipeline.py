@@ -147,7 +147,7 @@ class _Approximation:
         """The mesh refined so that samples and centres are dense enough for the basis, and its map to X/H."""
         longest = edge_length_for(self.triangles, max(_LEAST_VERTICES, _VERTICES_PER_FUNCTION * size))
         if longest not in self.maps:
-            refinement = self.stages("refinement", bisected, self.triangles, longest)
+            refinement = self.stages("refinement", bisected, self.triangles, longest, True)
             triangulation = _mapped(refinement.polyhedron, self.surface_type, self.config, self.registry, self.stages)
             self.maps[longest] = refinement, triangulation
         return self.maps[longest]

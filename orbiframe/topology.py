@@ -201,6 +201,19 @@ def _face_sheets(polyhedron: Polyhedron) -> tuple[int, int, Ints]:
     return components, sheets, label.astype(np.intp)
 
 
+def doubled_edges(polyhedron: Polyhedron) -> Bools:
+    """The halfedges (H,) of edges that are loops or share both ends with another edge.
+
+    A triangle mesh without such edges is a simplicial complex, up to the sphere of two triangles. In a surface of
+    constant curvature two points are joined by one geodesic in each homotopy class, so that a mesh with two edges of
+    one class, or with a loop that bounds a disc, has no map that is linear on each triangle.
+    """
+    low = np.minimum(polyhedron.tail, polyhedron.head)[polyhedron.representative]
+    high = np.maximum(polyhedron.tail, polyhedron.head)[polyhedron.representative]
+    _, place, count = np.unique(low * np.intp(len(polyhedron.vertices)) + high, return_inverse=True, return_counts=True)
+    return np.asarray(((low == high) | (count[place.ravel()] > 1))[polyhedron.edge])
+
+
 def fan_labels(polyhedron: Polyhedron) -> tuple[int, Ints]:
     """The number of fans (runs of faces round a vertex) and the fan of every corner, (H,)."""
     glued = np.flatnonzero(polyhedron.twin >= 0)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 from random_polyhedra import random_triangle_meshes
+from signed_faces import WORDS, fan, wandering
 
 from orbiframe.bisection import bisected, edge_length_for
 from orbiframe.diagonals import triangulated
@@ -13,7 +14,7 @@ from orbiframe.errors import TopologyError
 from orbiframe.polyhedron import Polyhedron
 from orbiframe.refinement import refine
 from orbiframe.testing.polyhedra import reference_polyhedra
-from orbiframe.topology import reversed_faces, surface_type, vector_areas
+from orbiframe.topology import doubled_edges, reversed_faces, surface_type, vector_areas
 
 SEEDS = st.integers(0, 2**32 - 1)
 PARTS = st.sampled_from([0.1, 0.25, 0.6, 1.5])
@@ -47,6 +48,39 @@ def test_edges_are_short_and_the_surface_is_the_same(mesh: Polyhedron, part: flo
     np.testing.assert_array_equal(fine.vertices[: len(mesh.vertices)], mesh.vertices)
     if part > 1:
         np.testing.assert_array_equal(fine.triangles, coarse.triangles)
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.sampled_from(sorted(WORDS)), SEEDS, st.sampled_from([0, 15, 60]), st.sampled_from([0.4, np.inf]))
+def test_cells_with_common_edges_become_a_simplicial_complex(name: str, seed: int, steps: int, part: float) -> None:
+    """Loops, edges with the same ends, faces that meet themselves: afterwards three vertices have at most one face."""
+    coarse = wandering(WORDS[name], seed, steps).polyhedron()
+    forest = bisected(coarse, part * coarse.edge_lengths.max(), True)
+    fine = forest.polyhedron
+    assert surface_type(fine) == surface_type(coarse)
+    assert not doubled_edges(fine).any()
+    corners = np.sort(fine.triangles, axis=1)
+    assert (np.diff(corners, axis=1) > 0).all()
+    assert len(np.unique(corners, axis=0)) == len(corners) or fine.face_count == 2
+    ends = np.sort(np.stack([fine.tail, fine.head]), axis=0)[:, fine.representative]
+    assert len(np.unique(ends, axis=1).T) == fine.edge_count
+    rng = np.random.default_rng(seed)
+    face = rng.integers(coarse.face_count, size=50)
+    weights = rng.dirichlet(np.ones(3), size=50)
+    there, fine_weights = forest.locate(face, weights)
+    first = np.einsum("nc,nci->ni", weights, coarse.vertices[coarse.triangles[face]])
+    second = np.einsum("nc,nci->ni", fine_weights, fine.vertices[fine.triangles[there]])
+    np.testing.assert_allclose(first, second, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["torus", "Klein bottle", "genus 3", "4 crosscaps"])
+def test_a_simplicial_complex_is_made_of_one_vertex_too(name: str) -> None:
+    coarse = fan(WORDS[name]).polyhedron()
+    assert doubled_edges(coarse).all()
+    fine = bisected(coarse, np.inf, True).polyhedron
+    assert not doubled_edges(fine).any()
+    assert surface_type(fine) == surface_type(coarse)
+    assert bisected(fine, np.inf, True).polyhedron.face_count == fine.face_count
 
 
 @settings(max_examples=30, deadline=None)
