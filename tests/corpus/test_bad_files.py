@@ -7,7 +7,8 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from corpus.bad_files import Mesh, Refused, cases
+from corpus.answers import Mesh, Refused
+from corpus.bad_files import cases
 
 from orbiframe import FormatError, Polyhedron, formats
 from orbiframe.registry import Registry

@@ -8,7 +8,7 @@ import zipfile
 
 import numpy as np
 import pytest
-from corpus import bad_files
+from corpus import answers, obj_files, off_files, ply_binary_files, ply_text_files, stl_files
 from hypothesis import HealthCheck, given, settings, strategies as st
 from orbiframe_polygons.threemf_reader import MODEL, RELATIONS
 from orbiframe_polygons.threemf_writer import RELATION
@@ -19,23 +19,23 @@ from orbiframe.registry import Registry
 REGISTRY = Registry.discover()
 VALID = {
     "colours.off": b"COFF\n4 4 6\n"
-    + bad_files.POINT_LINES.replace("\n", " 1 0 0\n").encode()
-    + bad_files.FACE_LINES.encode(),
-    "plain.off": bad_files.OFF.encode(),
-    "normals.obj": b"vn 0 0 1\n" + bad_files.V.encode() + b"f 1//1 3//-1 2//1\nf 1 2 4 \\\n3\nf -1 -2 -3\n",
-    "plain.obj": bad_files.OBJ.encode(),
-    "text.ply": bad_files.PLY.encode(),
-    "little.ply": bad_files.packed("<", "little", faces=[[0, 2, 1], [0, 1, 2, 3], [1, 2, 3], [2, 0, 3]]),
-    "big.ply": bad_files.packed(">", "big"),
-    "text.stl": bad_files.STL.encode(),
-    "binary.stl": bad_files.records(bad_files.FACETS),
+    + off_files.POINT_LINES.replace("\n", " 1 0 0\n").encode()
+    + off_files.FACE_LINES.encode(),
+    "plain.off": off_files.OFF.encode(),
+    "normals.obj": b"vn 0 0 1\n" + obj_files.V.encode() + b"f 1//1 3//-1 2//1\nf 1 2 4 \\\n3\nf -1 -2 -3\n",
+    "plain.obj": obj_files.OBJ.encode(),
+    "text.ply": ply_text_files.PLY.encode(),
+    "little.ply": ply_binary_files.packed("<", "little", faces=[[0, 2, 1], [0, 1, 2, 3], [1, 2, 3], [2, 0, 3]]),
+    "big.ply": ply_binary_files.packed(">", "big"),
+    "text.stl": stl_files.STL.encode(),
+    "binary.stl": stl_files.records(stl_files.FACETS),
 }
 
 
 def archive() -> bytes:
     """A 3MF file of a tetrahedron, not compressed, so that damage reaches the model."""
-    vertices = "".join(f'<vertex x="{x}" y="{y}" z="{z}"/>' for x, y, z in bad_files.CORNERS)
-    triangles = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in bad_files.TETRAHEDRON)
+    vertices = "".join(f'<vertex x="{x}" y="{y}" z="{z}"/>' for x, y, z in answers.CORNERS)
+    triangles = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in answers.TETRAHEDRON)
     mesh = f"<mesh><vertices>{vertices}</vertices><triangles>{triangles}</triangles></mesh>"
     build = '<build><item objectid="1" transform="1 0 0 0 1 0 0 0 1 0 0 5"/></build>'
     model = f'<model><resources><object id="1">{mesh}</object></resources>{build}</model>'

@@ -11,7 +11,7 @@ import warnings
 import zipfile
 
 import pytest
-from corpus import bad_files
+from corpus import bad_files, obj_files, ply_text_files
 from orbiframe_polygons.threemf_reader import MODEL, RELATIONS
 from orbiframe_polygons.threemf_writer import RELATION
 
@@ -92,8 +92,8 @@ def entity(place: str) -> str:
 
 NAMING = {
     "material.obj": (lambda p: f"mtllib {p}\nusemtl a\nmap_Kd {p}\n", "refused"),
-    "library.obj": (lambda p: f"mtllib {p}\n" + bad_files.OBJ, "read"),
-    "comment.ply": (lambda p: bad_files.PLY.replace("made by hand", f"TextureFile {p}"), "read"),
+    "library.obj": (lambda p: f"mtllib {p}\n" + obj_files.OBJ, "read"),
+    "comment.ply": (lambda p: ply_text_files.PLY.replace("made by hand", f"TextureFile {p}"), "read"),
     "hdf.xdmf": (lambda p: xdmf("HDF", f"{p}:/points"), "refused"),
     "binary.xdmf": (lambda p: xdmf("Binary", str(p)), "refused"),
     "include.xdmf": (
@@ -106,7 +106,7 @@ NAMING = {
 
 @pytest.mark.parametrize("name", NAMING)
 def test_a_path_in_a_file_is_not_followed(tmp_path, name):
-    (tmp_path / SECRET).write_text(bad_files.OBJ)
+    (tmp_path / SECRET).write_text(obj_files.OBJ)
     content, expected = NAMING[name]
     (tmp_path / name).write_text(content(tmp_path / SECRET))
     assert outcome(tmp_path / name) == expected
@@ -131,5 +131,5 @@ def test_a_model_in_another_part_is_not_opened(tmp_path):
 
 def test_the_listener_hears(tmp_path):
     path = tmp_path / f"{SECRET}.obj"
-    path.write_text(bad_files.OBJ)
+    path.write_text(obj_files.OBJ)
     assert outcome(path).startswith("opened")
