@@ -4,6 +4,7 @@ from orbiframe.atlas import Atlas as Atlas, Points as Points
 from orbiframe.basis import Basis as Basis, DifferentiableBasis as DifferentiableBasis, OrbitSumBasis as OrbitSumBasis
 from orbiframe.config import Config as Config
 from orbiframe.confinement import confined_read as confined_read, confined_write as confined_write
+from orbiframe.crowding import crowding as crowding
 from orbiframe.errors import (
     ConfigError as ConfigError,
     FitError as FitError,
@@ -44,6 +45,7 @@ from orbiframe.surface import OrbifoldSurface as OrbifoldSurface
 from orbiframe.surface_file import load_surface as load_surface, save_surface as save_surface
 from orbiframe.topology import (
     SurfaceType as SurfaceType,
+    doubled_edges as doubled_edges,
     fan_labels as fan_labels,
     reversed_faces as reversed_faces,
     surface_type as surface_type,
