@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import MapError, Polyhedron
-from orbiframe_parametrizers.elimination import Elimination
+from orbiframe_parametrizers.elimination import Successive
 
 Floats = NDArray[np.float64]
 
@@ -84,7 +84,7 @@ class PackingLaw:
         self.fixed[self.triangles[self.missing]] = True
         once = np.flatnonzero(mesh.representative)
         self.edges = once, mesh.twin[once]
-        self.elimination = Elimination.of(mesh)
+        self.systems = Successive()
 
     @property
     def start(self) -> Floats:
@@ -126,8 +126,8 @@ class PackingLaw:
             # Scale is free in the plane: the curvatures sum to zero, so holding one vertex changes nothing else.
             diagonal[0] += diagonal.mean()
         once, _ = self.edges
-        solve = self.elimination.solver(self.mesh.tail[once], self.mesh.head[once], -coupling, diagonal)
-        return solve(-state.curvatures)
+        edges = self.mesh.tail[once], self.mesh.head[once]
+        return self.systems.solution(self.mesh, edges, -coupling, diagonal, -state.curvatures)
 
     def hessian(self, state: State) -> tuple[Floats, Floats]:
         """The derivatives of the curvatures: minus the entry at every edge, (E,), and the diagonal, (V,)."""

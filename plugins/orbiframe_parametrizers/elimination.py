@@ -1,23 +1,24 @@
-"""Elimination: orders in which sparse matrices on a mesh are factored with little fill."""
+"""Elimination: orders in which sparse matrices on a mesh are factored with little fill, and solutions by factors."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csc_array
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse import coo_array, csc_array, csr_array, diags_array
+from scipy.sparse.linalg import LinearOperator, SuperLU, cg, splu
 
 from orbiframe import MapError, Polyhedron
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-_LEAF = 48
-_SMALL = 40_000
+_DIGITS = 1e-5
+_PATIENCE = 25
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,10 +33,12 @@ class Elimination:
 
     @classmethod
     def of(cls, mesh: Polyhedron) -> Elimination:
-        """A good order for the edges of a mesh."""
-        once = mesh.representative
-        order = elimination_order(mesh.vertices, mesh.tail[once], mesh.head[once])
-        return cls(order, np.argsort(order))
+        """A good order for the edges of a mesh; found once for each mesh."""
+        if mesh not in _FOUND:
+            once = mesh.representative
+            order = elimination_order(len(mesh.vertices), mesh.tail[once], mesh.head[once])
+            _FOUND[mesh] = cls(order, np.argsort(order))
+        return _FOUND[mesh]
 
     def matrix(self, tail: Ints, head: Ints, entries: NDArray[Any], diagonal: NDArray[Any]) -> csc_array[Any]:
         """The Hermitian matrix in this order with entries (E,) at (tail, head), conjugates at (head, tail)."""
@@ -53,77 +56,98 @@ class Elimination:
         return lambda right: np.asarray(factors.solve(right[self.order])[self.place])
 
 
-def elimination_order(positions: Floats, tail: Ints, head: Ints) -> Ints:
-    """The vertices in an order that keeps the factors of matrices on the edges (tail, head) sparse, (V,).
+_FOUND: WeakKeyDictionary[Polyhedron, Elimination] = WeakKeyDictionary()
 
-    Minimum degree up to 40,000 vertices, where it is quick and does well on long thin triangles; then nested
-    dissection, which is quicker to find and as good on meshes of even triangles.
+
+def elimination_order(count: int, tail: Ints, head: Ints) -> Ints:
+    """The vertices in an order that keeps the factors of matrices on the edges (tail, head) sparse, (count,).
+
+    Nested dissection by METIS (Karypis and Kumar 1998); minimum degree on systems for which METIS is not packaged.
     """
-    if len(positions) <= _SMALL:
-        return _minimum_degree_order(len(positions), tail, head)
-    return dissection_order(positions, tail, head)
+    graph = _graph(count, tail, head)
+    try:
+        return dissection_order(graph)
+    except ImportError:
+        return minimum_degree_order(graph)
 
 
-def _minimum_degree_order(count: int, tail: Ints, head: Ints) -> Ints:
+def _graph(count: int, tail: Ints, head: Ints) -> csr_array[Any]:
+    """Ones where two vertices have a common edge, however many, and nothing on the diagonal."""
+    apart = tail != head
+    tail, head = tail[apart], head[apart]
+    place = np.concatenate([tail, head]), np.concatenate([head, tail])
+    graph = coo_array((np.ones(2 * len(tail)), place), shape=(count, count)).tocsr()
+    graph.data[:] = 1.0
+    return graph
+
+
+def dissection_order(graph: csr_array[Any]) -> Ints:
+    """Halves first, the separator between them last, recursively: about V log V entries in a factor.
+
+    Raises ImportError where pymetis is not installed.
+    """
+    from pymetis import CSRAdjacency, nested_dissection
+
+    if graph.nnz == 0:
+        return np.arange(graph.shape[0])
+    return np.array(nested_dissection(CSRAdjacency(graph.indptr, graph.indices))[0], dtype=np.intp)
+
+
+def minimum_degree_order(graph: csr_array[Any]) -> Ints:
+    """A vertex with the fewest neighbours first, its neighbours joined, and so on."""
+    count = graph.shape[0]
     # SuperLU's minimum degree takes quadratic time on some regular numberings: shuffled vertices have none.
     shuffled = np.random.default_rng(0).permutation(count)
-    place = np.empty(count, dtype=np.intp)
-    place[shuffled] = np.arange(count)
-    i, j = place[np.concatenate([tail, head])], place[np.concatenate([head, tail])]
-    every = np.arange(count)
-    data = np.concatenate([np.full(len(i), -1.0), 1.0 + np.bincount(i, minlength=count)])
-    matrix = coo_array((data, (np.append(i, every), np.append(j, every))), shape=(count, count)).tocsc()
+    matrix = (diags_array(1.0 + np.diff(graph.indptr)) - graph).tocsc()[shuffled][:, shuffled]
     factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     order = np.empty(count, dtype=np.intp)
     order[factors.perm_c] = shuffled
     return order
 
 
-def dissection_order(positions: Floats, tail: Ints, head: Ints) -> Ints:
-    """The vertices in an order that keeps factors sparse: halves first, the separator between them last, recursively.
+class Successive:
+    """Solutions of symmetric positive definite systems on one set of vertices, each matrix near the one before.
 
-    positions: (V, 3); tail, head: (E,) the ends of the edges. All parts of one level are halved at once, across
-    their widest axis; the separator is made of the vertices of one half with a neighbour in the other. Geometric
-    nested dissection (George 1973; Gilbert, Miller, Teng 1998): O(V log^2 V) time, about V log V entries in a factor.
+    The factors of the first matrix precondition conjugate gradients with the later ones, whatever edges those have; a
+    matrix is factored only where that takes too many steps. A step costs a fifteenth of the factors or less.
     """
-    count = len(positions)
-    part = np.zeros(count, dtype=np.intp)
-    code = np.zeros(count, dtype=np.int64)
-    alive = np.arange(count)
-    depth = 0
-    while len(alive) and np.bincount(part[alive]).max() > _LEAF and depth < 36:
-        right = _upper_half(positions[alive], part[alive])
-        side = np.full(count, -1, dtype=np.intp)
-        side[alive] = right
-        crossing = (side[tail] >= 0) & (side[head] >= 0) & (part[tail] == part[head]) & (side[tail] != side[head])
-        ends = np.concatenate([tail[crossing], head[crossing]])
-        separator = np.zeros(count, dtype=np.bool_)
-        separator[ends[side[ends] == 0]] = True
-        code *= 3
-        code[alive] += right
-        code[side < 0] += 2
-        code[separator] += 2 - code[separator] % 3
-        part[alive] = 2 * part[alive] + right
-        alive = alive[~separator[alive]]
-        _, part[alive] = np.unique(part[alive], return_inverse=True)
-        depth += 1
-    return np.argsort(code, kind="stable")
+
+    def __init__(self) -> None:
+        self._near: Callable[[Floats], Floats] | None = None
+
+    def solution(
+        self, mesh: Polyhedron, edges: tuple[Ints, Ints], entries: Floats, diagonal: Floats, right: Floats
+    ) -> Floats:
+        """The solution (V,) to five digits, as a step of Newton's method needs it.
+
+        edges: tails and heads (E,) among the edges of the mesh; entries (E,), diagonal (V,): of the matrix. Raises
+        MapError for a singular matrix.
+        """
+        if self._near is not None:
+            matrix = _symmetric(*edges, entries, diagonal)
+            answer = by_conjugate_gradients(matrix, right, self._near, tolerance=_DIGITS, steps=_PATIENCE)
+            if answer is not None:
+                return answer
+        self._near = Elimination.of(mesh).solver(*edges, entries, diagonal)
+        return self._near(right)
 
 
-def _upper_half(positions: Floats, part: Ints) -> Ints:
-    """0 or 1 for every vertex: below or above the median of its part along the part's widest axis."""
-    by_part = np.argsort(part, kind="stable")
-    starts = np.flatnonzero(np.diff(part[by_part], prepend=-1))
-    sorted_positions = positions[by_part]
-    spread = np.maximum.reduceat(sorted_positions, starts) - np.minimum.reduceat(sorted_positions, starts)
-    axis = np.repeat(spread.argmax(axis=1), np.diff(starts, append=len(part)))
-    key = sorted_positions[np.arange(len(part)), axis]
-    order = by_part[np.lexsort((key, part[by_part]))]
-    rank = np.arange(len(part)) - np.repeat(starts, np.diff(starts, append=len(part)))
-    half = np.repeat(np.diff(starts, append=len(part)) // 2, np.diff(starts, append=len(part)))
-    right = np.empty(len(part), dtype=np.intp)
-    right[order] = rank >= half
-    return right
+def by_conjugate_gradients(
+    matrix: csr_array[Any], right: Floats, near: Callable[[Floats], Floats], *, tolerance: float, steps: int
+) -> Floats | None:
+    """The solution of a positive definite system to a relative tolerance, or None if that needs more steps.
+
+    near: solves a system whose matrix is near to this one.
+    """
+    inverse = LinearOperator(matrix.shape, matvec=lambda r: near(r.ravel()), dtype=np.float64)
+    answer, failure = cg(matrix, right, rtol=tolerance, maxiter=steps, M=inverse)
+    return None if failure else np.asarray(answer)
+
+
+def _symmetric(tail: Ints, head: Ints, entries: Floats, diagonal: Floats) -> csr_array[Any]:
+    every = np.arange(len(diagonal))
+    place = np.concatenate([tail, head, every]), np.concatenate([head, tail, every])
+    return coo_array((np.concatenate([entries, entries, diagonal]), place), shape=(len(every),) * 2).tocsr()
 
 
 def factorised(matrix: csc_array[Any]) -> SuperLU:

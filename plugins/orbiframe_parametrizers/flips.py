@@ -23,7 +23,7 @@ class Flippable:
     """
 
     def __init__(self, mesh: Polyhedron, x: Floats) -> None:
-        self.vertices = mesh.vertices
+        self.start = mesh
         self.tail, self.twin, self.same = mesh.tail.copy(), mesh.twin.copy(), mesh.same.copy()
         self.x = x.copy()
         self.log = np.zeros((0, 2), dtype=np.intp)
@@ -36,7 +36,7 @@ class Flippable:
     def copy(self) -> Flippable:
         """The same state in arrays of its own."""
         other = object.__new__(Flippable)
-        other.vertices, other.log = self.vertices, self.log
+        other.start, other.log = self.start, self.log
         other.tail, other.twin = self.tail.copy(), self.twin.copy()
         other.same, other.x = self.same.copy(), self.x.copy()
         return other
@@ -64,8 +64,7 @@ class Flippable:
 
     def mesh(self) -> Polyhedron:
         """The present triangulation with the vertices in space (only its connectivity means anything)."""
-        offsets = np.arange(len(self.tail) // 3 + 1) * 3
-        return Polyhedron(self.vertices, offsets, self.tail, self.twin, self.same)
+        return Polyhedron(self.start.vertices, self.start.offsets, self.tail, self.twin, self.same)
 
     def undone(self, steps: Floats, inverse: Floats) -> Floats:
         """Edge isometries (H, 3, 3) of the present triangulation carried back to the first one.

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import MapError, Polyhedron
-from orbiframe_parametrizers.elimination import Elimination
+from orbiframe_parametrizers.elimination import Successive
 from orbiframe_parametrizers.flips import Flippable
 
 Floats = NDArray[np.float64]
@@ -29,8 +29,10 @@ class Scaling:
     steps: int
 
 
-def scaled(mesh: Polyhedron) -> Scaling:
+def scaled(mesh: Polyhedron, sides: Floats | None = None) -> Scaling:
     """The hyperbolic metric that is discretely conformal to the mesh: sinh(l/2) = exp((u_i + u_j)/2) L_ij.
+
+    sides: (H,), edge lengths that take the place of those in space, where another metric is meant.
 
     Newton on the convex energy whose gradient is 2 pi minus the angle sum. The triangulation is first made Delaunay in
     the metric of the mesh, and after every change of u again by Ptolemy flips, which stay in the conformal class; with
@@ -38,23 +40,31 @@ def scaled(mesh: Polyhedron) -> Scaling:
     Gillespie, Springborn, Crane 2021).
     Raises MapError where it stalls in rounding.
     """
-    corners = mesh.vertices[mesh.triangles]
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum() / 2
+    lengths = mesh.edge_lengths if sides is None else sides
+    area = _area(lengths.reshape(-1, 3))
     chi = len(mesh.vertices) - mesh.edge_count + mesh.face_count
-    if not (mesh.edge_lengths.min() > 0 and area > 0):
+    if not (lengths.min() > 0 and area > 0):
         raise MapError("vertex scaling needs edges of positive length; weld coincident vertices first")
-    start = Flippable(mesh, mesh.edge_lengths * np.sqrt(2 * np.pi * abs(chi) / area) / 2)
+    start = Flippable(mesh, lengths * np.sqrt(2 * np.pi * abs(chi) / area) / 2)
     start.make_delaunay(flat=True)
     state = _State(start)
     tolerance = max(_TOLERANCE, 4e-16 * float(np.bincount(mesh.tail).max()))
+    systems = Successive()
     for step in range(_STEPS):
         if state.worst < tolerance:
             return Scaling(state.triangulation, state.lengths, state.angles.ravel(), step)
-        further = _searched(state, _direction(state))
+        further = _searched(state, _direction(state, systems))
         if further is None:
             break
         state = further
     raise MapError(f"vertex scaling stopped at an angle error of {state.worst:.1e}; use circle packing instead")
+
+
+def _area(sides: Floats) -> float:
+    """The area of all triangles with given sides (F, 3), by Heron's formula in the stable order of Kahan."""
+    c, b, a = np.sort(sides, axis=1).T
+    square = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c))
+    return float(np.sqrt(np.maximum(square, 0.0)).sum() / 4)
 
 
 class _State:
@@ -65,7 +75,7 @@ class _State:
         self.lengths = 2 * np.arcsinh(triangulation.x)
         sides = self.lengths.reshape(-1, 3)
         self.angles = _corner_angles(sides)
-        sums = np.bincount(triangulation.tail, weights=self.angles.ravel(), minlength=len(triangulation.vertices))
+        sums = np.bincount(triangulation.tail, weights=self.angles.ravel(), minlength=len(triangulation.start.vertices))
         self.curvatures = 2 * np.pi - sums
 
     @property
@@ -86,7 +96,7 @@ def _corner_angles(sides: Floats) -> Floats:
         return np.asarray(2 * np.arctan(np.sqrt(top / bottom)))
 
 
-def _direction(state: _State) -> Floats:
+def _direction(state: _State, systems: Successive) -> Floats:
     """The Newton step (V,): minus the inverse Hessian times the curvatures."""
     triangles = state.triangulation.triangles
     sides = state.lengths.reshape(-1, 3)
@@ -108,10 +118,11 @@ def _direction(state: _State) -> Floats:
         ends.append((triangles[:, a], triangles[:, b]))
         values.append(-(by_opposite + by_next))
     i, j = (np.concatenate(part) for part in zip(*ends, strict=True))
-    # A flipped edge is fill in the order of another triangulation: a new one costs far less.
     entries: Floats = np.concatenate(values).astype(np.float64)
-    solve = Elimination.of(state.triangulation.mesh()).solver(i, j, entries, diagonal)
-    return solve(np.asarray(-state.curvatures, dtype=np.float64))
+    right = np.asarray(-state.curvatures, dtype=np.float64)
+    # A flipped edge is fill in the order of another triangulation, so what is factored has an order of its own.
+    mesh = state.triangulation.mesh() if len(state.triangulation.log) else state.triangulation.start
+    return systems.solution(mesh, (i, j), entries, diagonal, right)
 
 
 def _searched(state: _State, step: Floats) -> _State | None:
