@@ -2,8 +2,18 @@
 
 from orbiframe.atlas import Atlas as Atlas, Points as Points
 from orbiframe.basis import Basis as Basis, DifferentiableBasis as DifferentiableBasis, OrbitSumBasis as OrbitSumBasis
+from orbiframe.bernstein import (
+    bernstein_values as bernstein_values,
+    blossom as blossom,
+    coefficient_count as coefficient_count,
+    exponents as exponents,
+    polar as polar,
+    symmetric_power as symmetric_power,
+)
 from orbiframe.config import Config as Config
 from orbiframe.confinement import confined_read as confined_read, confined_write as confined_write
+from orbiframe.domains import domain_for as domain_for
+from orbiframe.element_basis import ElementBasis as ElementBasis
 from orbiframe.crowding import crowding as crowding
 from orbiframe.errors import (
     ConfigError as ConfigError,
@@ -17,8 +27,16 @@ from orbiframe.errors import (
     UsageError as UsageError,
 )
 from orbiframe.fitter import Fitter as Fitter
+from orbiframe.geodesic_triangulation import GeodesicTriangulation as GeodesicTriangulation
 from orbiframe.geometry import Geometry as Geometry
 from orbiframe.group import Group as Group
+from orbiframe.macro import (
+    PowellSabinSplit as PowellSabinSplit,
+    Unknowns as Unknowns,
+    VertexJets as VertexJets,
+    enclosing_triangles as enclosing_triangles,
+    shaped_triangles as shaped_triangles,
+)
 from orbiframe.marked_group import MarkedGroup as MarkedGroup
 from orbiframe.marking import Marking as Marking, marking_along as marking_along
 from orbiframe.motion import Motion as Motion

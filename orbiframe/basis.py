@@ -12,9 +12,13 @@ from orbiframe.atlas import Points
 from orbiframe.errors import FitError
 from orbiframe.orbifold import Orbifold
 from orbiframe.orbit_sum import Pairs, reaching_pairs
+from orbiframe.quotient import divide_jets
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
+
+JET_KINDS = (1, 3, 6, 12)  # how many matrices the jets of order 0, 1, 2 and 3 have
+_CHUNK = 1 << 16
 
 
 class Basis(ABC):
@@ -32,17 +36,30 @@ class Basis(ABC):
     def design_matrix(self, points: Points) -> csr_array:
         """The values of all functions at n points, sparse (n, size)."""
 
+    def values(self, points: Points, coefficients: Floats) -> Floats:
+        """The values (n, q) of q combinations of the functions, with coefficients (size, q), at n points."""
+        parts = [self.design_matrix(part) @ coefficients for part in _chunks(points)]
+        return np.concatenate(parts)
+
 
 class DifferentiableBasis(Basis):
     """A basis that knows its covariant derivatives."""
 
     @abstractmethod
     def jet_matrices(self, points: Points, order: int) -> list[csr_array]:
-        """Values and covariant derivatives up to order 0, 1 or 2, each sparse (n, size).
+        """Values and covariant derivatives up to order 0, 1, 2 or 3, each sparse (n, size): 1, 3, 6 or 12 of them.
 
-        In the orthonormal frame (e1, e2) = `geometry.frame(x)` at each point: [b], [b, D1, D2] or
-        [b, D1, D2, D11, D12, D22], where Dij is the covariant Hessian.
+        In the orthonormal frame (e1, e2) = `geometry.frame(x)` at each point: b; D1, D2; D11, D12, D22, where Dij is
+        the covariant Hessian; D1;11, D1;12, D1;22, D2;11, D2;12, D2;22, where Dk;ij is the covariant derivative of the
+        Hessian along e_k.
         """
+
+    def jets(self, points: Points, coefficients: Floats, order: int) -> Floats:
+        """The same for q combinations of the functions, with coefficients (size, q): (1, 3, 6 or 12, n, q)."""
+        parts = [
+            np.stack([matrix @ coefficients for matrix in self.jet_matrices(part, order)]) for part in _chunks(points)
+        ]
+        return np.concatenate(parts, axis=1)
 
 
 class OrbitSumBasis(DifferentiableBasis):
@@ -85,7 +102,7 @@ class OrbitSumBasis(DifferentiableBasis):
         lost = np.flatnonzero(~(total[0] >= np.finfo(float).tiny))
         if len(lost):
             _uncovered(points, pairs.rows[lost[0]])
-        return _Block(pairs.rows, start, column, _quotient(jets, total, np.diff(start)))
+        return _Block(pairs.rows, start, column, divide_jets(jets, total, np.diff(start)))
 
     def _profile_jets(self, pairs: Pairs, order: int) -> Floats:
         """The jets of f(c / c_i) from D c and Hess c = (1 - K c) g, (1, 3 or 6 rows, one column per pair)."""
@@ -111,6 +128,12 @@ class _Block:
         self.count = np.diff(start)
 
 
+def _chunks(points: Points) -> list[Points]:
+    """The points in parts that bound the memory of design matrices; at least one."""
+    bounds = range(0, max(len(points.patch), 1), _CHUNK)
+    return [Points(points.patch[b : b + _CHUNK], points.x[b : b + _CHUNK]) for b in bounds]
+
+
 def _uncovered(points: Points, row: int) -> None:
     raise FitError(
         f"no function reaches point {row} (patch {points.patch[row]}, x = {points.x[row]}); make the functions wider "
@@ -127,21 +150,6 @@ def _sum_lifts(start: Ints, column: Ints, jets: Floats) -> tuple[Ints, Ints, Flo
         return start, column, jets
     keep = np.flatnonzero(fresh)
     return np.searchsorted(keep, start), column[keep], np.add.reduceat(jets, keep, axis=1)
-
-
-def _quotient(jets: Floats, total: Floats, count: Ints) -> Floats:
-    """The jets of phi / S from the jets of phi and S, by the quotient rule; rows b, 1, 2, 11, 12, 22.
-
-    jets: (m, p), overwritten; total: (m, r), their sums over each row; count: (r,), pairs in each row.
-    """
-    jets *= np.repeat(1 / total[0], count)
-    sums = [np.repeat(row, count) for row in total / total[0]]
-    for a in range(1, min(len(jets), 3)):
-        jets[a] -= jets[0] * sums[a]
-    if len(jets) > 3:
-        for row, (a, b) in enumerate(((1, 1), (1, 2), (2, 2)), start=3):
-            jets[row] -= jets[a] * sums[b] + jets[b] * sums[a] + jets[0] * sums[row]
-    return jets
 
 
 def _assemble(blocks: list[_Block], shape: tuple[int, int], kinds: int) -> list[csr_array]:

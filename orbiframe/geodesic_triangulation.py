@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -91,7 +91,7 @@ class GeodesicTriangulation:
         label = connected_components(graph, directed=False)[1]
         first, number = np.unique(label, return_index=True)[1], np.empty(label.max() + 1, dtype=np.intp)
         number[label[np.sort(first)]] = np.arange(len(first))
-        return number[label].reshape(-1, 3)
+        return np.asarray(number[label].reshape(-1, 3))
 
     @property
     def vertex_count(self) -> int:
@@ -200,10 +200,12 @@ class GeodesicTriangulation:
         for c in range(3):
             child[:, c, c], child[:, c, (c + 1) % 3], child[:, c, (c + 2) % 3] = x[:, c], middle[:, c], before[:, c]
         child[:, 3] = middle
-        return replace(self, corners=child.reshape(-1, 3, 3), **self._refined_gluing())
+        twin, same, gluing = self._refined_gluing()
+        patch, placement = np.repeat(self.patch, 4), np.repeat(self.placement, 4, axis=0)
+        return GeodesicTriangulation(self.orbifold, child.reshape(-1, 3, 3), twin, same, gluing, patch, placement)
 
-    def _refined_gluing(self) -> dict[str, NDArray[np.generic]]:
-        """Twins, side flags, gluings and places of the children: outer halves inherit, inner edges lie in one frame."""
+    def _refined_gluing(self) -> tuple[Ints, Bools, Floats]:
+        """Twins, side flags and gluings of the children: outer halves inherit, inner edges lie in one frame."""
         count = self.face_count
         twin = np.empty((count, 4, 3), dtype=np.intp)
         same = np.zeros((count, 4, 3), dtype=np.bool_)
@@ -219,13 +221,7 @@ class GeodesicTriangulation:
                 start_half = child == c
                 twin[:, child, c] = _half(self.twin[edge], self.same[edge] == start_half)
                 same[:, child, c], gluing[:, child, c] = self.same[edge], self.gluing[edge]
-        return {
-            "twin": twin.ravel(),
-            "same": same.ravel(),
-            "gluing": gluing.reshape(-1, 3, 3),
-            "patch": np.repeat(self.patch, 4),
-            "placement": np.repeat(self.placement, 4, axis=0),
-        }
+        return twin.ravel(), same.ravel(), gluing.reshape(-1, 3, 3)
 
 
 def _following(halfedge: Ints) -> Ints:

@@ -78,8 +78,7 @@ class OrbifoldSurface:
 
     def evaluate(self, points: Points) -> Floats:
         """The surface points (n, 3) over points of X/H."""
-        parts = [self.basis.design_matrix(part) @ self.coefficients for part in _chunks(points)]
-        return np.asarray(self.origin + self.scale * np.concatenate(parts))
+        return np.asarray(self.origin + self.scale * self.basis.values(points, self.coefficients))
 
     def jet(self, points: Points) -> Jet:
         """Surface points with first and second derivatives. Raises FitError for a basis that has none."""
@@ -88,8 +87,8 @@ class OrbifoldSurface:
 
     def normals(self, points: Points) -> Floats:
         """Unit normals S1 x S2 / |S1 x S2| (n, 3), right-handed in the frame of the patch of each point."""
-        d = np.concatenate([self._derivatives(part, 1)[1:] for part in _chunks(points)], axis=1)
-        return _unit(np.cross(d[0], d[1]))
+        d = self._derivatives(points, 1)
+        return _unit(np.cross(d[1], d[2]))
 
     def curvature(self, points: Points) -> Curvature:
         """Gaussian and mean curvature over points of X/H from the two fundamental forms.
@@ -126,7 +125,7 @@ class OrbifoldSurface:
         points = self.triangulation.locate(face, barycentric)
         if not isinstance(self.basis, DifferentiableBasis):
             return mesh.polyhedron.with_vertices(self.evaluate(points))
-        d = np.concatenate([self._derivatives(part, 1) for part in _chunks(points)], axis=1)
+        d = self._derivatives(points, 1)
         normals = _unit(np.cross(d[1], d[2])) * self.triangulation.face_signs[face, None]
         return mesh.polyhedron.with_vertices(self.origin + self.scale * d[0], normals)
 
@@ -146,18 +145,13 @@ class OrbifoldSurface:
 
     def _unit_jet(self, points: Points) -> Jet:
         """The jet of the surface before it is placed in space."""
-        d = np.concatenate([self._derivatives(part, 2) for part in _chunks(points)], axis=1)
+        d = self._derivatives(points, 2)
         return Jet(d[0], np.moveaxis(d[1:3], 0, 1), np.moveaxis(d[3:], 0, 1))
 
     def _derivatives(self, points: Points, order: int) -> Floats:
         if not isinstance(self.basis, DifferentiableBasis):
             raise FitError("this basis knows no derivatives; use one that does, such as 'gaussian'")
-        return np.stack([matrix @ self.coefficients for matrix in self.basis.jet_matrices(points, order)])
-
-
-def _chunks(points: Points) -> list[Points]:
-    bounds = range(0, max(len(points.patch), 1), _CHUNK)
-    return [Points(points.patch[b : b + _CHUNK], points.x[b : b + _CHUNK]) for b in bounds]
+        return self.basis.jets(points, self.coefficients, order)
 
 
 def _dot(a: Floats, b: Floats) -> Floats:

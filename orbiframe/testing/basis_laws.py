@@ -76,15 +76,20 @@ def derivatives_are_continuous(component: Component, lab: Lab) -> None:
 
 
 def jets_agree_with_differences(component: Component, lab: Lab) -> None:
-    """The covariant derivatives of first and second order are those of the functions along geodesics."""
+    """The covariant derivatives of first and second order are those of the functions along geodesics.
+
+    At all points for a C-infinity basis; for piecewise functions at three points in four at least, because differences
+    mean nothing across an edge where a derivative jumps.
+    """
     for basis, triangulation in _bases(component, lab):
         if isinstance(basis, DifferentiableBasis):
             points = _points(triangulation, lab, 20)
             jets = [matrix.toarray() for matrix in basis.jet_matrices(points, 2)]
             _close(jets[0], basis.design_matrix(points), 1e-14)
             scale = 1 / np.sqrt(np.abs(jets[3:]).max() + 1)
+            share = 1.0 if basis.smoothness > 1000 else 0.75
             for angle in (0.0, np.pi / 2, 0.7):
-                _check_direction(basis, points, jets, angle, 1e-2 * scale)
+                _check_direction(basis, points, jets, angle, 1e-2 * scale, share)
 
 
 def same_input_gives_the_same_matrix(component: Component, lab: Lab) -> None:
@@ -185,15 +190,22 @@ def _roughness(basis: Basis, triangulation: Triangulation, order: int, steps: in
     return float(np.abs(np.diff(values, order + 1, axis=0)).max() / h**order)
 
 
-def _check_direction(basis: Basis, points: Points, jets: list[Floats], angle: float, h: float) -> None:
-    """First and second derivatives along one direction against differences of fourth order."""
+def _check_direction(basis: Basis, points: Points, jets: list[Floats], angle: float, h: float, share: float) -> None:
+    """Derivatives along one direction against differences of fourth order, at a share of the points."""
     c, s = np.cos(angle), np.sin(angle)
     below2, below, here, above, above2 = _along(basis, points, angle, h * np.arange(-2.0, 3.0))
     first = (8 * (above - below) - (above2 - below2)) / (12 * h)
     second = (16 * (above + below - 2 * here) - (above2 + below2 - 2 * here)) / (12 * h * h)
     bend = c * c * jets[3] + 2 * c * s * jets[4] + s * s * jets[5]
-    _close(first, c * jets[1] + s * jets[2], 1e-5 * np.abs(jets[1:3]).max())
-    _close(second, bend, 1e-4 * np.abs(jets[3:]).max())
+    _mostly_close(first, c * jets[1] + s * jets[2], 1e-5 * np.abs(jets[1:3]).max(), share)
+    _mostly_close(second, bend, 1e-4 * np.abs(jets[3:]).max(), share)
+
+
+def _mostly_close(found: Floats, wanted: Floats, tolerance: float, share: float) -> None:
+    error = np.quantile(np.abs(found - wanted).max(axis=1), share, method="inverted_cdf")
+    assert error <= tolerance, (
+        f"off by {error:.3g} at more than {1 - share:.0%} of the points; allowed is {tolerance:.3g}"
+    )
 
 
 def _close(found: Any, wanted: Any, tolerance: float) -> None:

@@ -1,0 +1,144 @@
+"""ElementBasis: piecewise polynomials on X/H, given by one sparse matrix from unknowns to Bernstein coefficients."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from orbiframe.atlas import Points
+from orbiframe.basis import JET_KINDS, DifferentiableBasis
+from orbiframe.bernstein import coefficient_count
+from orbiframe.bernstein_kernels import evaluate_nets, fill_rows, polynomial_tables
+from orbiframe.galerkin import nearest_to_one
+from orbiframe.geodesic_triangulation import GeodesicTriangulation
+from orbiframe.location import Locator
+from orbiframe.quotient import divide_jets
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+
+class ElementBasis(DifferentiableBasis):
+    """Functions that are homogeneous polynomials of one degree on every micro triangle of a geodesic triangulation.
+
+    A function on X/H is f = F restricted to X, where F is a polynomial in R^3 on the cone over each micro triangle.
+    The matrix C takes the unknowns to the Bernstein coefficients of all micro triangles; values, derivatives, scalar
+    products and exact patches follow from the corners of the micro triangles, the degree and C alone.
+
+    domain: the triangulation; degree; cells: (F, m, 3, 3), the corners of the micro triangles [triangle, micro, corner,
+    coordinate] in the frame of their triangle, vectors in R^3 that need not lie on X; matrix: C, sparse
+    (F m n, size) with n = (degree + 1)(degree + 2) / 2 (splines: sections 3.2 and 3.3 of the paper).
+
+    Constants are no homogeneous polynomials of odd degree in S^2 and H^2. There the functions are divided by W, the
+    function of the space that is nearest to 1: the rational space S/W, in which constants are exact; `weights` are the
+    coefficients of W, None where nothing is divided. rational: False keeps the plain polynomials.
+    """
+
+    def __init__(
+        self,
+        domain: GeodesicTriangulation,
+        degree: int,
+        cells: Floats,
+        matrix: csr_array,
+        smoothness: float,
+        *,
+        rational: bool = True,
+    ) -> None:
+        self.orbifold = domain.orbifold
+        self.domain = domain
+        self.degree = degree
+        self.cells = cells
+        self.matrix = matrix
+        self.size = matrix.shape[1]
+        self.smoothness = smoothness
+        divided = rational and degree % 2 == 1 and domain.geometry.curvature != 0
+        self.weights = nearest_to_one(self) if divided else None
+
+    def design_matrix(self, points: Points) -> csr_array:
+        """The values of all functions at n points, sparse (n, size)."""
+        return self.jet_matrices(points, 0)[0]
+
+    def jet_matrices(self, points: Points, order: int) -> list[csr_array]:
+        """See `DifferentiableBasis`."""
+        face, columns = self._located(points, order)
+        start, column, slot = self._pattern
+        count = np.diff(start)[face]
+        row_start = np.concatenate([[0], np.cumsum(count)])
+        values = np.zeros((JET_KINDS[order], row_start[-1]))
+        fill_rows(
+            (face, columns, self._inverse, self._shape),
+            (self.matrix.indptr, self.matrix.data, slot),
+            polynomial_tables(self.degree),
+            row_start,
+            values,
+        )
+        if self.weights is not None:
+            values = divide_jets(
+                values, self._polynomial_jets(face, columns, self.weights[:, None], order)[..., 0], count
+            )
+        within = np.arange(row_start[-1]) - np.repeat(row_start[:-1] - start[face], count)
+        index = np.int32 if row_start[-1] < 2**31 else np.int64
+        columns_of_rows, pattern = column[within].astype(index), row_start.astype(index)
+        shape = (len(face), self.size)
+        return [csr_array((row, columns_of_rows, pattern), shape=shape) for row in values]
+
+    def net(self, coefficients: Floats) -> Floats:
+        """The Bernstein coefficients of q functions from their coefficients (size, q): (F, m, n, q)."""
+        return np.asarray(self.matrix @ coefficients).reshape(*self.cells.shape[:2], -1, coefficients.shape[1])
+
+    def values(self, points: Points, coefficients: Floats) -> Floats:
+        """See `Basis`; evaluated from the Bernstein coefficients, without a design matrix."""
+        return self.jets(points, coefficients, 0)[0]
+
+    def jets(self, points: Points, coefficients: Floats, order: int) -> Floats:
+        """See `DifferentiableBasis`; evaluated from the Bernstein coefficients, without a design matrix."""
+        face, columns = self._located(points, order)
+        if self.weights is None:
+            return self._polynomial_jets(face, columns, coefficients, order)
+        both = self._polynomial_jets(face, columns, np.column_stack([coefficients, self.weights]), order)
+        jets, total = np.ascontiguousarray(both[..., :-1]), both[..., -1]
+        width = np.full(len(face), jets.shape[2])
+        return divide_jets(jets.reshape(len(jets), -1), total, width).reshape(jets.shape)
+
+    def _polynomial_jets(self, face: Ints, columns: Floats, coefficients: Floats, order: int) -> Floats:
+        values = np.empty((JET_KINDS[order], len(face), coefficients.shape[1]))
+        evaluate_nets(
+            (face, columns, self._inverse, self._shape), self.net(coefficients), polynomial_tables(self.degree), values
+        )
+        return np.asarray(values)
+
+    @cached_property
+    def locator(self) -> Locator:
+        """Finds the triangle of a point."""
+        return Locator(self.domain)
+
+    def _located(self, points: Points, order: int) -> tuple[Ints, Floats]:
+        if order == 0:
+            face, x = self.locator.locate(points)
+            return face, x[:, :, None]
+        return self.locator.locate_frames(points)
+
+    @property
+    def _shape(self) -> tuple[int, int]:
+        """The curvature and the degree."""
+        return self.domain.geometry.curvature, self.degree
+
+    @cached_property
+    def _inverse(self) -> Floats:
+        """The matrices that take a point to its barycentric coordinates in every micro triangle, (F, m, 3, 3)."""
+        return np.ascontiguousarray(np.linalg.inv(np.swapaxes(self.cells, -1, -2)))
+
+    @cached_property
+    def _pattern(self) -> tuple[Ints, Ints, Ints]:
+        """The unknowns that matter on each triangle: start (F + 1,), columns, and for every nonzero of C its place."""
+        rows_per_face = self.cells.shape[1] * coefficient_count(self.degree)
+        row = np.repeat(np.arange(self.matrix.shape[0]), np.diff(self.matrix.indptr))
+        key = (row // rows_per_face) * np.int64(self.size) + self.matrix.indices
+        found, place = np.unique(key, return_inverse=True)
+        face, column = np.divmod(found, self.size)
+        start = np.searchsorted(face, np.arange(len(self.cells) + 1))
+        slot = place - start[row // rows_per_face]
+        return start, column, slot.astype(np.int32)

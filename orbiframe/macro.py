@@ -1,0 +1,251 @@
+"""Macro elements: jets at vertices, normals at edges and splits of triangles, from which spline families are built.
+
+The k-jet of a spline of degree d at a vertex v is the homogeneous polynomial P(u) = B(v^(d-k), u^k), B the blossom. The
+coefficients within distance k of that corner of a triangle are those of P on the triangle. So jets need no tangent
+frames, and are carried from triangle to triangle by substitution.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array, csr_array
+
+from orbiframe.bernstein import coefficient_count, symmetric_power
+from orbiframe.geodesic_triangulation import GeodesicTriangulation
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class Unknowns:
+    """Numbers of unknowns: so many at every vertex, then so many on every edge, then so many in every triangle.
+
+    In a triangle they stand in this order: those of corners 0, 1, 2, of edges 0, 1, 2 (edge c from corner c to c + 1)
+    and of the inside.
+    """
+
+    domain: GeodesicTriangulation
+    at_vertex: int
+    on_edge: int
+    in_face: int
+
+    @property
+    def size(self) -> int:
+        """How many there are on X/H."""
+        d = self.domain
+        return self.at_vertex * d.vertex_count + self.on_edge * d.edge_count + self.in_face * d.face_count
+
+    @property
+    def local_size(self) -> int:
+        """How many matter on one triangle; one of them may occur several times."""
+        return 3 * self.at_vertex + 3 * self.on_edge + self.in_face
+
+    def vertex_slots(self, corner: int) -> slice:
+        """Where the unknowns of a corner stand among those of a triangle."""
+        return slice(self.at_vertex * corner, self.at_vertex * (corner + 1))
+
+    def edge_slots(self, edge: int) -> slice:
+        """Where the unknowns of an edge stand among those of a triangle."""
+        first = 3 * self.at_vertex + self.on_edge * edge
+        return slice(first, first + self.on_edge)
+
+    @property
+    def face_slots(self) -> slice:
+        """Where the unknowns of the inside stand among those of a triangle."""
+        return slice(3 * self.at_vertex + 3 * self.on_edge, self.local_size)
+
+    @cached_property
+    def numbers(self) -> Ints:
+        """The number on X/H of every unknown of every triangle, (F, local_size)."""
+        d = self.domain
+        edges = self.at_vertex * d.vertex_count
+        faces = edges + self.on_edge * d.edge_count
+        parts = (
+            (0, self.at_vertex, d.vertex),
+            (edges, self.on_edge, d.edge.reshape(-1, 3)),
+            (faces, self.in_face, np.arange(d.face_count)[:, None]),
+        )
+        columns = [first + count * owner[..., None] + np.arange(count) for first, count, owner in parts]
+        return np.concatenate([column.reshape(d.face_count, -1) for column in columns], axis=1)
+
+    def matrix(self, nets: Floats, faces: slice = slice(None)) -> csr_array:
+        """C from Bernstein coefficients as forms of the unknowns of their triangle: nets (F, m, n, local_size).
+
+        Terms of one unknown that occurs several times in a triangle are added. faces: the triangles that nets holds.
+        """
+        row, local = np.nonzero(nets.reshape(-1, self.local_size))
+        rows_per_face = nets.shape[1] * nets.shape[2]
+        column = self.numbers[faces][row // rows_per_face, local]
+        shape = (len(nets) * rows_per_face, self.size)
+        return coo_array((nets.reshape(-1, self.local_size)[row, local], (row, column)), shape=shape).tocsr()
+
+
+@dataclass(frozen=True, eq=False)
+class VertexJets:
+    """Jets of one order at all vertices: Bernstein coefficients of P on a triangle about each vertex.
+
+    order: k; triangles: (V, 3, 3), the corners in columns, in the frame of the reference corner of the vertex, on the
+    plane beta(v, q) = 1 (in E^2 q0 = 1), which touches X in S^2 and H^2.
+    """
+
+    domain: GeodesicTriangulation
+    order: int
+    triangles: Floats
+
+    @property
+    def count(self) -> int:
+        """Unknowns of a vertex: (k + 1)(k + 2) / 2."""
+        return coefficient_count(self.order)
+
+    @cached_property
+    def _to_reference(self) -> Floats:
+        """From frames of triangles to coordinates in the triangle about the vertex of each corner, (F, 3, 3, 3)."""
+        inverse = np.linalg.inv(self.triangles)[self.domain.vertex]
+        return np.asarray(inverse @ self.domain.geometry.inverse(self.domain.corner_frame))
+
+    def forms(self, corner: int, vectors: Floats, order: int | None = None) -> Floats:
+        """The coefficients of P of the vertex at a corner on a triangle of vectors, (F, n, n): [coefficient, unknown].
+
+        vectors: (F, 3, 3), corners of that triangle in columns, in the frame of each triangle of the domain; by default
+        of degree `order` = k. The blossom of P at vectors w_i is read off where its exponent stands.
+        """
+        return symmetric_power(self._to_reference[:, corner] @ vectors, self.order if order is None else order)
+
+
+def tangent_points(domain: GeodesicTriangulation, corner: int, vectors: Floats) -> Floats:
+    """Vectors seen from the vertex of a corner: in its frame at the origin, on the plane x0 = 1, (F, ..., 2).
+
+    vectors: (F, ..., 3), in the frames of the triangles of the domain.
+    """
+    geometry, reference = domain.geometry, domain.corners.reshape(-1, 3)[domain.vertex_corner]
+    to_vertex = geometry.inverse(geometry.carry(reference))[domain.vertex[:, corner]]
+    move = to_vertex @ geometry.inverse(domain.corner_frame[:, corner])
+    seen = np.einsum("fij,f...j->f...i", move, vectors)
+    return np.asarray(seen[..., 1:] / seen[..., :1])
+
+
+def shaped_triangles(domain: GeodesicTriangulation, around: Floats, radius: float) -> Floats:
+    """Triangles about the vertices in the shape of their stars, for well conditioned jets: (V, 3, 3), in columns.
+
+    The regular triangle of circumradius `radius`, moved by the square root of the mean of p p^T over the points p of
+    the star on the tangent plane. around: (F, 3, m, 3), vectors in the star of every corner, in the frames of the
+    triangles.
+    """
+    moment, _ = _moments(domain, around)
+    return _on_tangent_planes(domain, radius * _roots(moment) @ _regular(0.0))
+
+
+def enclosing_triangles(domain: GeodesicTriangulation, around: Floats, turns: int = 24) -> Floats:
+    """Triangles about the vertices that hold all points of their stars, for functions >= 0: (V, 3, 3), in columns.
+
+    Regular triangles in the shape of the star (see `shaped_triangles`), in the best of `turns` positions, as small as
+    they can be.
+    """
+    moment, seen = _moments(domain, around)
+    root = _roots(moment)
+    vertex = np.repeat(domain.vertex.ravel(), around.shape[2])
+    flat = np.einsum("nij,nj->ni", np.linalg.inv(root)[vertex], seen.reshape(-1, 2))
+    size, angle = np.full(domain.vertex_count, np.inf), np.zeros(domain.vertex_count)
+    for turn in np.arange(turns) * (2 * np.pi / 3 / turns):
+        sides = -2 * _regular(turn)
+        needed = np.full(domain.vertex_count, 1e-12)
+        np.maximum.at(needed, vertex, (flat @ sides).max(axis=1))
+        better = needed < size - 1e-12
+        size[better], angle[better] = needed[better], turn
+    corners = np.moveaxis(_regular(angle), -1, 0) if np.ndim(angle) else _regular(angle)
+    return _on_tangent_planes(domain, size[:, None, None] * root @ corners)
+
+
+def _moments(domain: GeodesicTriangulation, around: Floats) -> tuple[Floats, Floats]:
+    """The mean of p p^T over the star of every vertex, (V, 2, 2), and the points p, (F, 3, m, 2)."""
+    seen = np.stack([tangent_points(domain, c, around[:, c]) for c in range(3)], axis=1)
+    outer = np.einsum("fcmi,fcmj->fcij", seen, seen) / around.shape[2]
+    total = np.zeros((domain.vertex_count, 2, 2))
+    np.add.at(total, domain.vertex, outer)
+    count = np.bincount(domain.vertex.ravel(), minlength=domain.vertex_count)
+    return total / count[:, None, None], seen
+
+
+def _roots(moment: Floats) -> Floats:
+    """Square roots of symmetric 2 x 2 matrices."""
+    values, axes = np.linalg.eigh(moment)
+    return np.asarray((axes * np.sqrt(values)[:, None, :]) @ np.swapaxes(axes, 1, 2))
+
+
+def _regular(turn: Floats | float) -> Floats:
+    """The corners of the regular triangle of circumradius 1, in columns: (2, 3, ...)."""
+    angles = 2 * np.pi / 3 * np.arange(3)[(...,) + (None,) * np.ndim(turn)] + np.asarray(turn)
+    return np.stack([np.cos(angles), np.sin(angles)])
+
+
+def _on_tangent_planes(domain: GeodesicTriangulation, plane: Floats) -> Floats:
+    """Points (V, 2, 3) of the plane x0 = 1 at the origin carried to the vertices, in the frames of their corners."""
+    reference = domain.corners.reshape(-1, 3)[domain.vertex_corner]
+    lifted = np.concatenate([np.ones((len(plane), 1, 3)), plane], axis=1)
+    return np.asarray(domain.geometry.carry(reference) @ lifted)
+
+
+@dataclass(frozen=True, eq=False)
+class PowellSabinSplit:
+    """Every triangle in six, through its incentre Z and the points R where the segments Z Z' cross the edges.
+
+    incentre: (F, 3), Z; edge_point: (F, 3, 3), R on every edge [triangle, edge, coordinate]; share: (F, 3, 2), mu and
+    nu with R = mu v_c + nu v_(c + 1) and mu + nu = 1. Micro triangles 2 c and 2 c + 1 are (v_c, R_c, Z) and
+    (v_(c + 1), R_c, Z).
+    """
+
+    domain: GeodesicTriangulation
+
+    @cached_property
+    def incentre(self) -> Floats:
+        """The intersections of the bisectors: Z = (w1 - w2) x (w2 - w3) with edge covectors w of length 1."""
+        x, k = self.domain.corners, self.domain.geometry.curvature
+        covector = np.cross(x, np.roll(x, -1, axis=1))
+        length = np.sqrt((covector**2 * np.array([k, 1.0, 1.0])).sum(axis=-1, keepdims=True))
+        w = covector / length
+        z = np.cross(w[:, 0] - w[:, 1], w[:, 1] - w[:, 2])
+        return np.asarray(z / self.coordinates(z).sum(axis=1, keepdims=True))
+
+    @cached_property
+    def share(self) -> Floats:
+        """Where the segments between neighbouring incentres cross their edge."""
+        d = self.domain
+        z = np.repeat(self.incentre, 3, axis=0)
+        beyond = d.geometry.act(d.gluing, z[d.twin])
+        plane = np.cross(z, beyond)
+        start, end = d.corners.reshape(-1, 3), np.roll(d.corners, -1, axis=1).reshape(-1, 3)
+        mu, nu = (plane * end).sum(axis=1), -(plane * start).sum(axis=1)
+        return np.asarray(np.stack([mu, nu], axis=1) / (mu + nu)[:, None]).reshape(-1, 3, 2)
+
+    @cached_property
+    def edge_point(self) -> Floats:
+        """R = mu v_c + nu v_(c + 1)."""
+        x = self.domain.corners
+        return np.asarray(self.share[..., :1] * x + self.share[..., 1:] * np.roll(x, -1, axis=1))
+
+    @cached_property
+    def cells(self) -> Floats:
+        """The corners of the micro triangles, (F, 6, 3, 3)."""
+        x, z = self.domain.corners, self.incentre
+        cells = np.empty((self.domain.face_count, 6, 3, 3))
+        for c in range(3):
+            cells[:, 2 * c, 0], cells[:, 2 * c + 1, 0] = x[:, c], x[:, (c + 1) % 3]
+            cells[:, 2 * c : 2 * c + 2, 1] = self.edge_point[:, c, None]
+        cells[:, :, 2] = z[:, None]
+        return cells
+
+    @cached_property
+    def around(self) -> Floats:
+        """The split points in the star of every corner: R before, R after and Z, (F, 3, 3, 3)."""
+        r = self.edge_point
+        z = np.broadcast_to(self.incentre[:, None], r.shape)
+        return np.stack([np.roll(r, 1, axis=1), r, z], axis=2)
+
+    def coordinates(self, vectors: Floats) -> Floats:
+        """The barycentric coordinates (F, 3) of one vector in every triangle, (F, 3)."""
+        return np.asarray(np.linalg.solve(np.swapaxes(self.domain.corners, 1, 2), vectors[..., None])[..., 0])
