@@ -13,6 +13,8 @@ from orbiframe.topology import vector_areas
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
+RULE = "the shortest diagonal inside the face, again and again"
+
 _TIE = 1e-9
 
 

@@ -89,7 +89,7 @@ def fit(mesh: str | Path | Polyhedron, config: Config, registry: Registry, progr
     surface = replace(fitted.surface, origin=origin, scale=scale)
     density = config.output.refine or max(1, round(np.sqrt(_OUTPUT_FACES / triangles.face_count)))
     output = stages("tessellation", surface.tessellate, density)
-    summary = report(surface, surface_type, config, fitted.samples, fitted.deviation, output, stages.seconds)
+    summary = report(surface, surface_type, unit, config, fitted.samples, fitted.deviation, output, stages.seconds)
     return Result(surface, output, summary)
 
 

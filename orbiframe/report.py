@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.config import Config
+from orbiframe.crowding import crowding
+from orbiframe.diagonals import RULE
 from orbiframe.polyhedron import Polyhedron
 from orbiframe.samples import Samples
 from orbiframe.surface import OrbifoldSurface
@@ -29,6 +31,7 @@ class Deviation(NamedTuple):
 def report(
     surface: OrbifoldSurface,
     surface_type: SurfaceType,
+    polyhedron: Polyhedron,
     config: Config,
     samples: Samples,
     deviation: Deviation,
@@ -45,6 +48,7 @@ def report(
             "genus": surface_type.genus,
             "components": surface_type.components,
         },
+        "triangles": _cut_report(polyhedron),
         "geometry": triangulation.orbifold.geometry.name,
         "group": {
             "source": triangulation.group,
@@ -69,6 +73,12 @@ def report(
     }
 
 
+def _cut_report(polyhedron: Polyhedron) -> dict[str, Any]:
+    """How the faces of the input were cut into triangles, without new vertices."""
+    larger = polyhedron.face_sizes[polyhedron.face_sizes > 3]
+    return {"faces_cut": len(larger), "diagonals": int((larger - 3).sum()), "rule": RULE if len(larger) else "none"}
+
+
 def _map_report(triangulation: Triangulation) -> dict[str, Any]:
     weights = np.linalg.norm(vector_areas(triangulation.polyhedron), axis=1)
     median, p95 = _weighted_quantiles(triangulation.angle_distortion, weights, [0.5, 0.95])
@@ -76,6 +86,7 @@ def _map_report(triangulation: Triangulation) -> dict[str, Any]:
         "triangles": triangulation.polyhedron.face_count,
         "not_positive": triangulation.not_positive,
         "area_defect": triangulation.area_defect,
+        "crowding": crowding(triangulation)._asdict(),
         "angle_distortion": {"median": median, "p95": p95, "max": float(triangulation.angle_distortion.max())},
         "weights": triangulation.weights,
     }

@@ -10,6 +10,9 @@ from pathlib import Path
 from typing import Any
 
 
+WORTH_A_WARNING = 6.0
+
+
 def write_report(path: Path, report: Mapping[str, Any]) -> None:
     """Write a report as JSON; the file appears complete or not at all."""
     write_text(path, json_text(report) + "\n")
@@ -38,6 +41,10 @@ def summary(report: Mapping[str, Any]) -> str:
 def _lines(report: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     surface, group, mapped, fit, out = (report[key] for key in ("surface", "group", "map", "fit", "output"))
     yield "surface", f"{surface['name']} (Euler characteristic {surface['euler_characteristic']})"
+    cut = report["triangles"]
+    if cut["diagonals"]:
+        faces = _counted(cut["faces_cut"], "face", "faces")
+        yield "triangles", f"{_counted(cut['diagonals'], 'diagonal', 'diagonals')} in {faces}: {cut['rule']}"
     yield "geometry", str(report["geometry"])
     patches = _counted(group["patches"], "patch", "patches")
     yield "group", f"{group['source']}, {patches}, relation defect {group['relation_defect']:.1e}"
@@ -47,11 +54,22 @@ def _lines(report: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         f"{mapped['triangles']} triangles, {mapped['not_positive']} not positive; angle distortion "
         f"median {angle['median']:.2f}, p95 {angle['p95']:.2f}, max {angle['max']:.2f}",
     )
+    yield from _crowding(mapped["crowding"])
     yield "fit", f"{fit['basis']}, {fit['size']} functions, {fit['samples']} samples"
     yield "error", f"rms {fit['rms']:.2e}, max {fit['max']:.2e} of the bounding-box diagonal"
     yield "output", f"{out['vertices']} vertices, {out['faces']} faces"
     stages = ", ".join(f"{stage} {seconds:.1f}" for stage, seconds in report["seconds"].items())
     yield "seconds", f"{sum(report['seconds'].values()):.1f} ({stages})"
+
+
+def _crowding(crowding: Mapping[str, float]) -> Iterator[tuple[str, str]]:
+    """A warning where long thin parts of the mesh have cost digits; the digits of a fine mesh are not worth a line."""
+    if crowding["digits_lost"] >= WORTH_A_WARNING:
+        yield (
+            "warning",
+            f"crowding: long thin parts get little of X/H (smallest triangle {crowding['area_ratio']:.0e} of the "
+            f"largest); {crowding['digits_lost']:.0f} of 16 digits are lost there",
+        )
 
 
 def _counted(count: int, one: str, many: str) -> str:
