@@ -29,7 +29,7 @@ class Step:
 
     @property
     def open(self) -> bool:
-        """Whether no component is named: the pipeline chooses by the geometry, the mesh or the file suffix."""
+        """Whether no component is named: the pipeline chooses by the geometry, the mesh or the file, or takes none."""
         return self.name in OPEN_NAMES
 
 
@@ -45,7 +45,7 @@ class Output:
     tolerance: Annotated[float, Gt(0)] | None = None
 
 
-OPEN_NAMES = ("auto", "mesh")
+OPEN_NAMES = ("auto", "mesh", "none")
 
 # Table of the configuration: the kind of its component, the key that names it, and the name if nothing is said.
 STEPS = {
@@ -53,6 +53,7 @@ STEPS = {
     "group": ("group", "method", "mesh"),
     "marking": ("marker", "method", "auto"),
     "map": ("parametrizer", "method", "auto"),
+    "shape": ("optimizer", "method", "none"),
     "basis": ("basis", "name", "gaussian"),
     "fitter": ("fitter", "name", "least-squares"),
 }
@@ -64,7 +65,8 @@ class Config:
     """A fit in words: a step for each of the tables of `STEPS`, the output, plugin files.
 
     mesh: the reader, "auto" by the file suffix; group: "mesh" takes the group from the mesh; marking: cuts the mesh
-    open for a named group; map: "auto" takes the parametrizer that fits the geometry and the group; basis; fitter.
+    open for a named group; map: "auto" takes the parametrizer that fits the geometry and the group; shape: changes
+    the map so that faces become regular, "none" leaves it as it is; basis; fitter.
     places: where each "table.key" was written, for error messages.
     """
 
@@ -122,6 +124,11 @@ class Config:
     def map(self) -> Step:
         """The parametrizer."""
         return self.steps["map"]
+
+    @property
+    def shape(self) -> Step:
+        """The optimizer."""
+        return self.steps["shape"]
 
     @property
     def basis(self) -> Step:
@@ -239,7 +246,7 @@ def _step(table: str, given: Mapping[str, Any], places: Mapping[str, str]) -> St
 
 
 def _require_option_of_kind(table: str, step: Step, registry: Registry, places: Mapping[str, str]) -> None:
-    known = {} if step.name == "mesh" else _options_of_kind(step.kind, registry)
+    known = {} if step.name in ("mesh", "none") else _options_of_kind(step.kind, registry)
     for key in step.options:
         require_known(key, known, table, places)
 

@@ -24,9 +24,11 @@ class FaceShapes:
 
     angle: radians, the largest deviation of an interior angle from that of the regular polygon of the same area, which
     is the mean of the interior angles; adjacent and opposite: the largest ratio of two adjacent sides, and of two
-    opposite ones (nan where the number of corners is odd); area: signed as the areas of the triangulation.
+    opposite ones (nan where the number of corners is odd); area: signed as the areas of the triangulation; corners:
+    the number of corners.
     """
 
+    corners: Ints
     angle: Floats
     adjacent: Floats
     opposite: Floats
@@ -35,8 +37,8 @@ class FaceShapes:
     @property
     def size(self) -> Floats:
         """The ratio of the area to the mean area, or its reciprocal, whichever is larger; inf for no area."""
-        share = self.area / self.area.mean()
         with np.errstate(all="ignore"):
+            share = self.area / self.area.mean()
             return np.where(share > 0, np.maximum(share, 1 / share), np.inf)
 
     def summary(self) -> dict[str, Any]:
@@ -47,7 +49,8 @@ class FaceShapes:
             "opposite": self.opposite,
             "size": self.size,
         }
-        return {"count": len(self.angle)} | {name: _summary(values) for name, values in measures.items()}
+        counts = {"count": len(self.corners), "corners": int(self.corners.max())}
+        return counts | {name: _summary(values) for name, values in measures.items()}
 
 
 def face_shapes(polyhedron: Polyhedron, refinement: Bisection, triangulation: Triangulation) -> FaceShapes:
@@ -66,7 +69,7 @@ def face_shapes(polyhedron: Polyhedron, refinement: Bisection, triangulation: Tr
         lifted = _lifted(points[corners], steps[corners])
         measured[:, faces] = _measured(orbifold.geometry, lifted)
     sign = _signs(refinement, triangulation, polyhedron)
-    return FaceShapes(measured[0], measured[1], measured[2], sign * measured[3])
+    return FaceShapes(polyhedron.face_sizes, measured[0], measured[1], measured[2], sign * measured[3])
 
 
 def _lifted(points: Floats, steps: Floats) -> Floats:

@@ -17,11 +17,13 @@ from orbiframe.bisection import Bisection, bisected, edge_length_for
 from orbiframe.config import Config
 from orbiframe.diagonals import triangulated
 from orbiframe.errors import FitError, MapError, TopologyError
+from orbiframe.face_shapes import FaceShapes, face_shapes
 from orbiframe.geometry import Geometry
 from orbiframe.marked_group import MarkedGroup
 from orbiframe.options import options_of
 from orbiframe.polyhedron import Polyhedron
 from orbiframe.registry import Registry
+from orbiframe.regular_faces import regular_triangles
 from orbiframe.report import Deviation, report
 from orbiframe.samples import Samples
 from orbiframe.sampling import coordinate_samples
@@ -85,35 +87,55 @@ def fit(mesh: str | Path | Polyhedron, config: Config, registry: Registry, progr
     surface_type = stages("topology", require_closed_surface, polyhedron)
     unit, origin, scale = _normalised(oriented(without_unused_vertices(polyhedron)))
     triangles = stages("triangles", triangulated, unit)
-    fitted = _Approximation(triangles, surface_type, config, registry, stages).fitted()
+    fitted = _Approximation(unit, triangles, surface_type, config, registry, stages).fitted()
     surface = replace(fitted.surface, origin=origin, scale=scale)
     density = config.output.refine or max(1, round(np.sqrt(_OUTPUT_FACES / triangles.face_count)))
     output = stages("tessellation", surface.tessellate, density)
-    summary = report(surface, surface_type, unit, config, fitted.samples, fitted.deviation, output, stages.seconds)
+    faces = fitted.mapped.face_shapes(unit)
+    summary = report(
+        surface, surface_type, unit, config, fitted.samples, fitted.deviation, faces, output, stages.seconds
+    )
     return Result(surface, output, summary)
 
 
+class _Mapped(NamedTuple):
+    """A refined mesh and its map to X/H, as the parametrizer made it and as the optimizer left it."""
+
+    refinement: Bisection
+    first: Triangulation
+    triangulation: Triangulation
+
+    def face_shapes(self, polyhedron: Polyhedron) -> tuple[FaceShapes, FaceShapes | None]:
+        """The faces of the polyhedron in X/H, and as they were before an optimizer changed them, if one did."""
+        now = face_shapes(polyhedron, self.refinement, self.triangulation)
+        same = self.first is self.triangulation
+        return now, None if same else face_shapes(polyhedron, self.refinement, self.first)
+
+
 class _Fitted(NamedTuple):
-    """A surface for a mesh of unit size, what it was fitted to, and how well."""
+    """A surface for a mesh of unit size, its map, what it was fitted to, and how well."""
 
     surface: OrbifoldSurface
+    mapped: _Mapped
     samples: Samples
     deviation: Deviation
 
 
 @dataclass(frozen=True, eq=False)
 class _Approximation:
-    """The approximation of one triangle mesh of unit size, with as many functions as are asked for.
+    """The approximation of one polyhedron of unit size, with as many functions as are asked for.
 
-    maps: the refinement and the map for every longest edge that has been needed so far.
+    triangles: its faces cut into triangles; maps: the refinement and the map for every longest edge that has been
+    needed so far.
     """
 
+    polyhedron: Polyhedron
     triangles: Polyhedron
     surface_type: SurfaceType
     config: Config
     registry: Registry
     stages: _Stages
-    maps: dict[float, tuple[Bisection, Triangulation]] = field(default_factory=dict)
+    maps: dict[float, _Mapped] = field(default_factory=dict)
 
     def fitted(self) -> _Fitted:
         """The surface of a fixed number of functions, or of as many as the tolerance asks for."""
@@ -134,23 +156,35 @@ class _Approximation:
 
     def _of_size(self, size: int, config: Config) -> _Fitted:
         stages = self.stages
-        refinement, triangulation = self._map(size)
+        mapped = self._map(size)
+        refinement, triangulation = mapped.refinement, mapped.triangulation
         samples = stages("samples", coordinate_samples, triangulation)
         basis = stages("basis", config.component("basis", self.registry), triangulation.orbifold, triangulation)
         fitter = config.component("fitter", self.registry)()
         coefficients = stages("fit", fitter.fit, basis, samples)
         recipe = config.basis.name, _basis_options(config, self.registry)
         surface = OrbifoldSurface(triangulation, refinement, basis, coefficients, np.zeros(3), 1.0, *recipe)
-        return _Fitted(surface, samples, stages("error", _deviation, surface, samples))
+        return _Fitted(surface, mapped, samples, stages("error", _deviation, surface, samples))
 
-    def _map(self, size: int) -> tuple[Bisection, Triangulation]:
+    def _map(self, size: int) -> _Mapped:
         """The mesh refined so that samples and centres are dense enough for the basis, and its map to X/H."""
         longest = edge_length_for(self.triangles, max(_LEAST_VERTICES, _VERTICES_PER_FUNCTION * size))
         if longest not in self.maps:
             refinement = self.stages("refinement", bisected, self.triangles, longest, True)
-            triangulation = _mapped(refinement.polyhedron, self.surface_type, self.config, self.registry, self.stages)
-            self.maps[longest] = refinement, triangulation
+            first = _mapped(refinement.polyhedron, self.surface_type, self.config, self.registry, self.stages)
+            self.maps[longest] = _Mapped(refinement, first, self._shaped(refinement, first))
         return self.maps[longest]
+
+    def _shaped(self, refinement: Bisection, first: Triangulation) -> Triangulation:
+        """The map changed so that the faces of the polyhedron become regular, where an optimizer is named."""
+        step = self.config.shape
+        if step.open:
+            return first
+        target = refinement.spread(regular_triangles(self.polyhedron))
+        optimizer = self.config.component("shape", self.registry)
+        shaped: Triangulation = self.stages("shape", optimizer, first, target)
+        _require_embedding(shaped, f"the shapes of '{step.name}'", "shape.method = 'none'")
+        return shaped
 
 
 def _read(path: Path, config: Config, registry: Registry) -> Polyhedron:
@@ -190,12 +224,15 @@ def _mapped(
     chosen = PARAMETRIZER if group is None else NAMED_PARAMETRIZER
     name = chosen[geometry.name] if config.map.open else config.map.name
     triangulation: Triangulation = stages("map", config.component("map", registry, name), mesh, geometry, group)
-    if triangulation.not_positive:
-        raise MapError(
-            f"{triangulation.not_positive} of {mesh.face_count} triangles are folded in the map of '{name}'; "
-            "use map.method = 'auto'" + ("" if group is None else " or group.method = 'mesh'")
-        )
+    remedy = "map.method = 'auto'" + ("" if group is None else " or group.method = 'mesh'")
+    _require_embedding(triangulation, f"the map of '{name}'", remedy)
     return triangulation
+
+
+def _require_embedding(triangulation: Triangulation, made: str, remedy: str) -> None:
+    if triangulation.not_positive:
+        count = triangulation.polyhedron.face_count
+        raise MapError(f"{triangulation.not_positive} of {count} triangles are folded in {made}; use {remedy}")
 
 
 def _named_group(

@@ -7,7 +7,18 @@ from dataclasses import dataclass
 
 import pluggy
 
-KINDS = ("geometry", "marker", "group", "parametrizer", "basis", "fitter", "reader", "writer", "command")
+KINDS = (
+    "geometry",
+    "marker",
+    "group",
+    "parametrizer",
+    "optimizer",
+    "basis",
+    "fitter",
+    "reader",
+    "writer",
+    "command",
+)
 
 hookspec = pluggy.HookspecMarker("orbiframe")
 hookimpl = pluggy.HookimplMarker("orbiframe")

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from orbiframe.config import Config
 from orbiframe.crowding import crowding
 from orbiframe.diagonals import RULE
+from orbiframe.face_shapes import FaceShapes
 from orbiframe.polyhedron import Polyhedron
 from orbiframe.samples import Samples
 from orbiframe.surface import OrbifoldSurface
@@ -35,6 +36,7 @@ def report(
     config: Config,
     samples: Samples,
     deviation: Deviation,
+    faces: tuple[FaceShapes, FaceShapes | None],
     output: Polyhedron,
     seconds: dict[str, float],
 ) -> dict[str, Any]:
@@ -56,6 +58,7 @@ def report(
             "relation_defect": triangulation.relation_defect,
         },
         "map": _map_report(triangulation),
+        "faces": _faces_report(*faces),
         "fit": {
             "basis": config.basis.name,
             "size": surface.basis.size,
@@ -71,6 +74,11 @@ def report(
         "seconds": {stage: round(spent, 4) for stage, spent in seconds.items()},
         "versions": versions(),
     }
+
+
+def _faces_report(now: FaceShapes, before: FaceShapes | None) -> dict[str, Any]:
+    """The shapes of the faces of the polyhedron in X, and before an optimizer changed them, if one did."""
+    return {**now.summary(), "before": None if before is None else before.summary()}
 
 
 def _cut_report(polyhedron: Polyhedron) -> dict[str, Any]:

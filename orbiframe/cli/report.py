@@ -9,7 +9,6 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-
 WORTH_A_WARNING = 6.0
 
 
@@ -55,6 +54,9 @@ def _lines(report: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         f"median {angle['median']:.2f}, p95 {angle['p95']:.2f}, max {angle['max']:.2f}",
     )
     yield from _crowding(mapped["crowding"])
+    faces = report["faces"]
+    if faces["corners"] > 3:
+        yield "faces", _shapes(faces) + (f" (before: {_shapes(faces['before'])})" if faces["before"] else "")
     yield "fit", f"{fit['basis']}, {fit['size']} functions, {fit['samples']} samples"
     yield "error", f"rms {fit['rms']:.2e}, max {fit['max']:.2e} of the bounding-box diagonal"
     yield "output", f"{out['vertices']} vertices, {out['faces']} faces"
@@ -70,6 +72,15 @@ def _crowding(crowding: Mapping[str, float]) -> Iterator[tuple[str, str]]:
             f"crowding: long thin parts get little of X/H (smallest triangle {crowding['area_ratio']:.0e} of the "
             f"largest); {crowding['digits_lost']:.0f} of 16 digits are lost there",
         )
+
+
+def _shapes(faces: Mapping[str, Any]) -> str:
+    """Median and largest deviation of the faces from regular polygons."""
+    angle, sides = faces["angle"], faces["adjacent"]
+    return (
+        f"angles off by {angle['median']:.1f}° (max {angle['max']:.1f}°), "
+        f"sides 1 : {sides['median']:.2f} (max {sides['max']:.2f})"
+    )
 
 
 def _counted(count: int, one: str, many: str) -> str:

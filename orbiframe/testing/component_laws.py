@@ -15,6 +15,7 @@ POSITIONAL = {
     "marker": 1,
     "group": 2,
     "parametrizer": 3,
+    "optimizer": 2,
     "basis": 2,
     "fitter": 0,
     "reader": 1,

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
+from annotated_types import Ge
 from numpy.typing import NDArray
 
 from orbiframe import (
@@ -23,6 +24,7 @@ from orbiframe import (
 from orbiframe_parametrizers.developing import in_patches
 from orbiframe_parametrizers.edge_weights import WEIGHTS
 from orbiframe_parametrizers.embedding import embedded
+from orbiframe_parametrizers.even_areas import evened
 from orbiframe_parametrizers.unfolding import unfolded
 
 Floats = NDArray[np.float64]
@@ -38,21 +40,22 @@ def equivariant(
     group: MarkedGroup | None = None,
     *,
     weights: Literal["auto", "cotangent", "mixed", "mean-value", "uniform"] = "auto",
+    even_areas: Annotated[int, Ge(0)] = 0,
 ) -> Triangulation:
     """The harmonic map to the surface X/H of a named group, in the homotopy class of the marking.
 
     All vertices start at the centre of the cell of H, and Newton's method unfolds them (section 3.4, steps 1 to 3).
     The frames of neighbours in this map give patches near the origin, in which the map is harmonic once more, with all
     digits. polyhedron: a closed connected triangle mesh with chi <= 0, coherently oriented if orientable; geometry: of
-    the group; group: a marking of this mesh and a group with its word. weights: as for the map `harmonic`. Raises
-    MapError if no group is named, if the marking is of another mesh, if the surface does not live on the geometry, or
+    the group; group: a marking of this mesh and a group with its word. weights, even_areas: as for the map `harmonic`.
+    Raises MapError if no group is named, if the marking is of another mesh, if the surface does not live on the geometry, or
     if no map without a fold and with all relations is found.
     """
     surface = surface_type(polyhedron)
     _require(polyhedron, geometry, group, surface)
     assert group is not None
     try:
-        result = embedded(_layout(polyhedron, geometry, group, surface), weights)
+        result = evened(embedded(_layout(polyhedron, geometry, group, surface), weights), even_areas)
     except MapError as error:
         raise MapError(f"{_refused(group)}: {error}") from error
     if not (result.relation_defect < _RELATIONS and _area_defect(result, group) < _AREA):

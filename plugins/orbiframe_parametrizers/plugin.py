@@ -1,4 +1,4 @@
-"""Parametrizers: maps from a triangle mesh to X/H."""
+"""Parametrizers: maps from a triangle mesh to X/H, and an optimizer of the shapes in them."""
 
 from __future__ import annotations
 
@@ -26,5 +26,11 @@ def orbiframe_components() -> list[Component]:
             "sphere",
             "orbiframe_parametrizers.sphere:sphere",
             "chi > 0: packed or harmonic sphere, centred by a Moebius map",
+        ),
+        Component(
+            "optimizer",
+            "regular-faces",
+            "orbiframe_parametrizers.regular_faces:regular_faces",
+            "faces in X/H as regular as possible, squares from quadrilaterals, by Newton on a shape energy",
         ),
     ]
