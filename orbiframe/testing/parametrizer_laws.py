@@ -102,6 +102,17 @@ def order_of_faces_does_not_matter(component: Component, lab: Lab) -> None:
         _at_most(case, "a length in X changes by", error, 1e-6)
 
 
+def numbers_of_vertices_do_not_matter(component: Component, lab: Lab) -> None:
+    """With the vertices in another order, so that all computations start elsewhere, edges keep their lengths in X."""
+    for case in _cases(component, lab):
+        order = lab.rng.permutation(len(case.mesh.vertices))
+        mesh = replace(case.mesh, vertices=case.mesh.vertices[order], tail=np.argsort(order)[case.mesh.tail])
+        corners = np.arange(len(mesh.tail)).reshape(-1, 3)
+        group = None if case.group is None else _remarked(case.group, mesh, corners)
+        there = component(mesh, case.atlas.geometry, group)
+        _at_most(case, "a length in X changes by", edge_lengths(there) - edge_lengths(case.result), 1e-6)
+
+
 LAWS: tuple[Callable[[Component, Lab], None], ...] = (
     transitions_form_a_cocycle,
     no_face_is_flipped,
@@ -109,6 +120,7 @@ LAWS: tuple[Callable[[Component, Lab], None], ...] = (
     mesh_is_kept,
     patches_cover,
     order_of_faces_does_not_matter,
+    numbers_of_vertices_do_not_matter,
 )
 
 
@@ -133,12 +145,12 @@ def _bent(result: Triangulation) -> Triangulation:
     return _with_atlas(result, isometry=atlas.isometry @ atlas.geometry.rotation(0.001))
 
 
-def _moved(result: Triangulation, times: float) -> Triangulation:
-    """The first corner of the first face moved towards the second, so many times the length of the edge."""
+def _moved(result: Triangulation, times: float, edge: int = 0) -> Triangulation:
+    """The tail of a halfedge moved towards its head, so many times the length of the edge."""
     atlas, mesh, points = result.orbifold.atlas, result.polyhedron, result.points.copy()
-    here = points[mesh.tail[0]]
-    there = atlas.geometry.act(atlas.isometry[result.transition[0]], points[mesh.head[0]])
-    points[mesh.tail[0]] = atlas.geometry.exp(here, times * atlas.geometry.log(here, there))
+    here = points[mesh.tail[edge]]
+    there = atlas.geometry.act(atlas.isometry[result.transition[edge]], points[mesh.head[edge]])
+    points[mesh.tail[edge]] = atlas.geometry.exp(here, times * atlas.geometry.log(here, there))
     return replace(result, points=points)
 
 
@@ -151,6 +163,9 @@ MUTANTS: dict[str, Callable[[Component], Component]] = {
     ),
     "patches_cover": _altered(lambda result: _with_atlas(result, radius=0.5 * result.orbifold.atlas.radius)),
     "order_of_faces_does_not_matter": _altered(lambda result: _moved(result, 0.1)),
+    "numbers_of_vertices_do_not_matter": _altered(
+        lambda result: _moved(result, 0.1, int(result.polyhedron.tail.argmin()))
+    ),
 }
 
 
