@@ -21,7 +21,7 @@ from signed_faces import WORDS, fan, wandering
 
 from orbiframe import Polyhedron, Triangulation, pipeline
 from orbiframe.bisection import bisected, edge_length_for
-from orbiframe.crowding import crowding
+from orbiframe.crowding import crowding_of
 from orbiframe.diagonals import triangulated
 from orbiframe.errors import OrbiframeError
 from orbiframe.refinement import refine
@@ -102,7 +102,7 @@ def row(mesh: Polyhedron) -> str:
     except OrbiframeError as error:
         return f"{len(mesh.vertices)} | refused: {error} | | | | | | "
     seconds = time.perf_counter() - start
-    crowded = crowding(found)
+    crowded = crowding_of(found)
     return (
         f"{len(found.points)} | {found.not_positive} | {found.relation_defect:.0e} | {found.area_defect:.0e} | "
         f"{np.median(found.angle_distortion):.2f} | {crowded.area_ratio:.0e} | {crowded.digits_lost:.0f} | "

@@ -10,11 +10,12 @@ from orbiframe.bernstein import (
     polar as polar,
     symmetric_power as symmetric_power,
 )
+from orbiframe.bisection import bisected as bisected
 from orbiframe.config import Config as Config
 from orbiframe.confinement import confined_read as confined_read, confined_write as confined_write
 from orbiframe.domains import domain_for as domain_for
 from orbiframe.element_basis import ElementBasis as ElementBasis
-from orbiframe.crowding import crowding as crowding
+from orbiframe.crowding import crowding_of as crowding_of
 from orbiframe.errors import (
     ConfigError as ConfigError,
     FitError as FitError,

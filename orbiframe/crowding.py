@@ -17,7 +17,7 @@ class Crowding(NamedTuple):
     digits_lost: float
 
 
-def crowding(triangulation: Triangulation) -> Crowding:
+def crowding_of(triangulation: Triangulation) -> Crowding:
     """How unevenly the triangles of a map share X/H, and the digits that the smallest of them have lost.
 
     A finger of length L and radius r is mapped to a disc that is smaller than its root by about exp(-L/r), with any

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.config import Config
-from orbiframe.crowding import crowding
+from orbiframe.crowding import crowding_of
 from orbiframe.diagonals import RULE
 from orbiframe.face_shapes import FaceShapes
 from orbiframe.polyhedron import Polyhedron
@@ -94,7 +94,7 @@ def _map_report(triangulation: Triangulation) -> dict[str, Any]:
         "triangles": triangulation.polyhedron.face_count,
         "not_positive": triangulation.not_positive,
         "area_defect": triangulation.area_defect,
-        "crowding": crowding(triangulation)._asdict(),
+        "crowding": crowding_of(triangulation)._asdict(),
         "angle_distortion": {"median": median, "p95": p95, "max": float(triangulation.angle_distortion.max())},
         "weights": triangulation.weights,
     }

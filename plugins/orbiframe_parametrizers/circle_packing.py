@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import MapError, Polyhedron
+from orbiframe_parametrizers.advice import advice
 from orbiframe_parametrizers.elimination import Successive
 
 Floats = NDArray[np.float64]
@@ -44,14 +45,17 @@ def packed(mesh: Polyhedron, curvature: int, *, without_face: int | None = None)
     tolerance = max(_TOLERANCE, 4e-16 * float(np.bincount(mesh.tail).max()))
     steps = 0
     while state.worst >= tolerance and steps < _STEPS:
-        further = law.search(state, law.newton_direction(state))
+        try:
+            further = law.search(state, law.newton_direction(state))
+        except MapError:  # singular equations
+            break
         if further is None:
             break
         state, steps = further, steps + 1
     if not state.worst < _ACCEPTED:
         raise MapError(
-            f"the circle packing stopped at an angle error of {state.worst:.1e} ({_ACCEPTED:.0e} is allowed); "
-            "look for needle-like parts of the mesh with `orbiframe info`, or refine the mesh"
+            f"the circle packing stopped at an angle error of {state.worst:.1e}, {_ACCEPTED:.0e} is allowed; "
+            f"{advice(mesh)}"
         )
     radii = law.radii(state.u)
     return Packing(radii, radii[mesh.tail] + radii[mesh.head], state.angles.ravel(), steps)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import MapError, Triangulation
+from orbiframe_parametrizers.advice import advice
 from orbiframe_parametrizers.developing import with_patch_radii
 from orbiframe_parametrizers.edge_weights import WEIGHTS, cotangent, mean_value
 from orbiframe_parametrizers.harmonic_energy import minimised
@@ -27,6 +28,7 @@ def embedded(layout: Triangulation, choice: str, finish: Finish = lambda result,
     harmonic map with its weights (H,). Raises MapError where none is an embedding.
     """
     names = ["cotangent", "mixed", "mean-value", "uniform"] if choice == "auto" else [choice]
+    attempt = layout
     for name in names:
         if name == "mixed":
             result = _mixed(layout, finish)
@@ -36,10 +38,11 @@ def embedded(layout: Triangulation, choice: str, finish: Finish = lambda result,
             continue
         if result.not_positive == 0:
             return result
+        attempt = result
         layout = result if name == "cotangent" else layout  # a better first guess than the layout
     raise MapError(
         f"no map without a fold was found with {' or '.join(names)} weights; "
-        + ("remove needle-like triangles or refine the mesh" if choice == "auto" else "use map.weights = 'auto'")
+        + (advice(layout.polyhedron, attempt) if choice == "auto" else "use map.weights = 'auto'")
     )
 
 

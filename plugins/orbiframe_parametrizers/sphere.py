@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import Atlas, Geometry, MapError, MarkedGroup, Orbifold, Polyhedron, Triangulation, surface_type
+from orbiframe_parametrizers.advice import advice
 from orbiframe_parametrizers.circle_packing import packed
 from orbiframe_parametrizers.double_cover import DoubleCover, double_cover
 from orbiframe_parametrizers.edge_weights import WEIGHTS
@@ -51,10 +52,8 @@ def sphere(
     made = [target.mapped(name) for name in names]
     embedded = [result for result in made if result is not None and result.not_positive == 0]
     if not embedded:
-        raise MapError(
-            "the map to the sphere has folded triangles: parts of the mesh are too long and thin for double precision; "
-            "shorten them, or refine the mesh"
-        )
+        attempts = [result for result in made if result is not None]
+        raise MapError(f"the map to the sphere has folded triangles; {advice(polyhedron, *attempts)}")
     best = min(embedded, key=lambda result: float(np.median(result.angle_distortion)))
     return best if group is None else replace(best, group=group.source)
 
