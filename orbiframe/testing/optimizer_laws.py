@@ -84,13 +84,16 @@ LAWS: tuple[Callable[[Component, Lab], None], ...] = (
 
 
 def _of_map(name: str) -> Callable[[Component], Component]:
+    """The mutation of that name of maps, on what an optimizer makes."""
+
     def mutated(component: Component) -> Component:
-        return lambda first, target: maps.MUTANTS[name](lambda *_: component(first, target))(*_NO_ARGUMENTS)
+        def broken(first: Triangulation, target: Floats) -> Triangulation:
+            made = maps.MUTANTS[name](lambda *_: component(first, target))
+            return made(first.polyhedron, first.orbifold.geometry, None)
+
+        return broken
 
     return mutated
-
-
-_NO_ARGUMENTS: tuple[object, object, object] = (None, None, None)
 
 
 def _asked_for(change: Callable[[Floats], Floats]) -> Callable[[Component], Component]:

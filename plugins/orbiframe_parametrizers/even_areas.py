@@ -20,8 +20,8 @@ _POWER = 0.5
 def evened(made: Triangulation, rounds: int) -> Triangulation:
     """The harmonic map after so many rounds of w_ij <- w_ij (a_i a_j)^(1/4), in the same group.
 
-    a: the ratio of the area about a vertex in X to that in space, over its mean (Yoshizawa, Belyaev, Seidel 2004). Large
-    places get firmer edges and shrink. Weights stay positive, which keeps every round an embedding; a map of
+    a: the ratio of the area about a vertex in X to that in space, over its mean (Yoshizawa, Belyaev, Seidel 2004).
+    Large places get firmer edges and shrink. Weights stay positive, which keeps every round an embedding; a map of
     cotangents of which some are not positive goes on with mean values. A round that fails in rounding is the last.
     """
     if rounds == 0:
@@ -61,4 +61,5 @@ def _double_areas(mesh: Polyhedron) -> Floats:
 
 def _at_vertices(mesh: Polyhedron, areas: Floats) -> Floats:
     """The sum of areas (F,) about every vertex, (V,)."""
-    return np.bincount(mesh.tail, weights=np.repeat(areas, 3), minlength=len(mesh.vertices))
+    sums = np.bincount(mesh.tail, weights=np.repeat(areas, 3), minlength=len(mesh.vertices))
+    return np.asarray(sums, dtype=np.float64)
