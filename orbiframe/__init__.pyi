@@ -54,6 +54,7 @@ from orbiframe.samples import Samples as Samples
 from orbiframe.spacing import (
     Graph as Graph,
     Spacing as Spacing,
+    covering_points as covering_points,
     curve_order as curve_order,
     dijkstra_forest as dijkstra_forest,
     edge_graph as edge_graph,

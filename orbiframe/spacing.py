@@ -89,6 +89,15 @@ def farthest_points(graph: Graph, count: int, *, first: int = 0, radius: float =
     return Spacing(*_farthest(graph.start, graph.neighbour, graph.length, count, first, radius))
 
 
+def covering_points(graph: Graph, radius: float) -> Ints:
+    """Vertices at least `radius` from each other, with all other vertices nearer than that to one of them.
+
+    The first vertex, and then each next one that is still too far from all before it: as many as `farthest_points`
+    takes, about, and several times faster, because nothing beyond the radius is searched.
+    """
+    return np.asarray(_covering(graph.start, graph.neighbour, graph.length, radius))
+
+
 def dijkstra_forest(graph: Graph, sources: ArrayLike) -> Forest:
     """The shortest path from the nearest source to every vertex; equal distances go to the source found first."""
     return Forest(*_forest(graph.start, graph.neighbour, graph.length, np.asarray(sources, dtype=np.intp)))
@@ -138,6 +147,28 @@ def _farthest(start, neighbour, length, count, first, radius):  # type: ignore[n
         if distance[vertex] < radius or distance[vertex] == 0.0:
             break
     return chosen[:found].copy(), owner, distance
+
+
+@njit(cache=True)
+def _covering(start, neighbour, length, radius):  # type: ignore[no-untyped-def]
+    distance = np.full(len(start) - 1, radius)
+    chosen = [np.intp(0) for _ in range(0)]
+    for vertex in range(len(start) - 1):
+        if distance[vertex] < radius:
+            continue
+        chosen.append(np.intp(vertex))
+        distance[vertex] = 0.0
+        queue = [(0.0, vertex)]
+        while queue:
+            near, i = heapq.heappop(queue)
+            if near > distance[i]:
+                continue
+            for k in range(start[i], start[i + 1]):
+                j, far = neighbour[k], near + length[k]
+                if far < distance[j]:
+                    distance[j] = far
+                    heapq.heappush(queue, (far, j))
+    return np.array(chosen)
 
 
 @njit(cache=True)

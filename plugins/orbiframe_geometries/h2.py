@@ -9,6 +9,7 @@ from orbiframe import Geometry, GeometryError
 
 Floats = NDArray[np.float64]
 _FORM = np.array([1.0, -1.0, -1.0])
+_SIGNS = np.outer(_FORM, _FORM)
 
 
 class H2(Geometry):
@@ -58,11 +59,12 @@ class H2(Geometry):
         """
         p, q = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
         a, b = _height(p), _height(q)
-        apart = q[..., 1:] - p[..., 1:]
-        near = np.where((a <= b)[..., None], p[..., 1:], q[..., 1:])
-        cross = near[..., 0] * apart[..., 1] - near[..., 1] * apart[..., 0]
-        dot = np.sum(p[..., 1:] * q[..., 1:], axis=-1)
-        close = (np.sum(apart**2, axis=-1) + cross**2) / (1 + p[..., 0] * q[..., 0] + np.maximum(dot, 0.0))
+        nearer = a <= b
+        # Written out: sums over an axis of two are slow.
+        u, v = q[..., 1] - p[..., 1], q[..., 2] - p[..., 2]
+        cross = np.where(nearer, p[..., 1], q[..., 1]) * v - np.where(nearer, p[..., 2], q[..., 2]) * u
+        dot = p[..., 1] * q[..., 1] + p[..., 2] * q[..., 2]
+        close = (u**2 + v**2 + cross**2) / (1 + p[..., 0] * q[..., 0] + np.maximum(dot, 0.0))
         return np.asarray(np.where(dot >= 0, close, a + b + a * b - dot))
 
     def distance(self, x: ArrayLike, y: ArrayLike) -> Floats:
@@ -123,7 +125,7 @@ class H2(Geometry):
 
     def inverse(self, g: ArrayLike) -> Floats:
         """J g^T J."""
-        return np.asarray(_FORM[:, None] * np.swapaxes(np.asarray(g, dtype=float), -1, -2) * _FORM)
+        return np.asarray(_SIGNS * np.swapaxes(np.asarray(g, dtype=float), -1, -2))
 
 
 def _height(x: Floats) -> Floats:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from orbiframe import (
@@ -15,9 +16,9 @@ from orbiframe import (
     Polyhedron,
     SurfaceType,
     Triangulation,
+    covering_points,
     dijkstra_forest,
     edge_graph,
-    farthest_points,
 )
 from orbiframe_parametrizers.relations import with_relations
 
@@ -53,8 +54,11 @@ def in_patches(
     frame. See `developed` for the rest.
     """
     patch, frames = _patch_frames(mesh, geometry, lengths, steps, patch_radius)
-    labels = frames[mesh.tail] @ steps @ geometry.inverse(frames[mesh.head])
-    transition, tail, head, isometry = _classes(mesh, geometry, patch, labels)
+    edges = np.flatnonzero(mesh.representative)
+    ends = mesh.tail[edges], mesh.head[edges]
+    labels = _labels(frames, geometry.inverse(frames), steps[edges], *ends)
+    along, tail, head, isometry = _classes(geometry, patch[ends[0]], patch[ends[1]], labels)
+    transition = _on_halfedges(mesh, edges, along)
     isometry = with_relations(geometry, transition, isometry)
     inverse = np.concatenate([[0], 1 + (np.arange(len(tail) - 1) ^ 1)])
     points = geometry.settle(frames[..., 0])
@@ -73,29 +77,34 @@ def _edge_directions(mesh: Polyhedron, angles: Floats) -> tuple[Floats, Floats, 
     A walk round each vertex sums the corner angles. Crossing an edge whose twin runs the same way flips the sense in
     which the next face is passed: the sense (H,) is True where the walk passes the face's corner counterclockwise.
     """
-    size = len(mesh.tail)
-    before = np.empty(size, dtype=np.intp)
-    before[mesh.next] = np.arange(size)
-    first = np.full(size, np.nan)
-    last = np.full(size, np.nan)
-    sense = np.ones(size, dtype=np.bool_)
-    _, corner = np.unique(mesh.tail, return_index=True)
-    angle = np.zeros(len(corner))
-    forward = np.ones(len(corner), dtype=np.bool_)
-    while len(corner):
-        after = angle + angles[corner]
-        first[corner] = np.where(forward, angle, after)
-        last[corner] = np.where(forward, after, angle)
-        sense[corner] = forward
-        crossed = np.where(forward, before[corner], corner)
-        twin = mesh.twin[crossed]
-        # The twin leaves this vertex, so that its corner is here, exactly if the direction flag says so.
-        leaves = forward ^ mesh.same[crossed]
-        corner = np.where(leaves, twin, mesh.next[twin])
-        angle, forward = after, leaves
-        fresh = np.isnan(first[corner])
-        corner, angle, forward = corner[fresh], angle[fresh], forward[fresh]
+    before = np.empty(len(mesh.tail), dtype=np.intp)
+    before[mesh.next] = np.arange(len(mesh.tail))
+    first, last, sense = _walked(mesh.tail, mesh.next, before, mesh.twin, mesh.same, angles, len(mesh.vertices))
     return first, last[mesh.next], sense
+
+
+@njit(cache=True)
+def _walked(tail, following, before, twin, same, angles, count):  # type: ignore[no-untyped-def]
+    """Angles at which the two edges of every corner leave its vertex, and the sense of the corner."""
+    first, last = np.empty(len(tail)), np.empty(len(tail))
+    sense, begun = np.ones(len(tail), dtype=np.bool_), np.zeros(count, dtype=np.bool_)
+    for start in range(len(tail)):
+        if begun[tail[start]]:
+            continue
+        begun[tail[start]] = True
+        corner, forward, angle = start, True, 0.0
+        while True:
+            after = angle + angles[corner]
+            first[corner], last[corner] = (angle, after) if forward else (after, angle)
+            sense[corner] = forward
+            crossed = before[corner] if forward else corner
+            # The twin leaves this vertex, so that its corner is here, exactly if the direction flag says so.
+            forward = forward != same[crossed]
+            corner = twin[crossed] if forward else following[twin[crossed]]
+            angle = after
+            if corner == start:
+                break
+    return first, last, sense
 
 
 def edge_isometries(mesh: Polyhedron, geometry: Geometry, lengths: Floats, angles: Floats) -> Floats:
@@ -107,15 +116,47 @@ def edge_isometries(mesh: Polyhedron, geometry: Geometry, lengths: Floats, angle
     turn by pi, move by the length, turn the axis into the direction of the edge at i.
     """
     outgoing, incoming, sense = _edge_directions(mesh, angles)
-    flipped = sense != sense[mesh.next]
-    mirror = np.where(flipped[:, None, None], np.diag([1.0, 1.0, -1.0]), np.eye(3))
-    there = geometry.rotation(np.pi) @ mirror @ geometry.rotation(-incoming)
-    steps = geometry.rotation(outgoing) @ geometry.translation(lengths) @ there
-    other = np.flatnonzero(~mesh.representative)
-    twin = mesh.twin[other]
-    same = mesh.same[other, None, None]
-    steps[other] = np.where(same, steps[twin], geometry.inverse(steps[twin]))
+    edges = np.flatnonzero(mesh.representative)
+    mirror = np.where(sense[edges] != sense[mesh.next[edges]], -1.0, 1.0)
+    along = _edge_products(geometry, outgoing[edges], lengths[edges], mirror, incoming[edges])
+    twin = mesh.twin[edges]
+    steps = np.empty((len(mesh.tail), 3, 3))
+    steps[edges] = along
+    steps[twin] = np.where(mesh.same[edges, None, None], along, geometry.inverse(along))
     return steps
+
+
+def _edge_products(geometry: Geometry, outgoing: Floats, lengths: Floats, mirror: Floats, incoming: Floats) -> Floats:
+    """rotation(outgoing) translation(length) rotation(pi) diag(1, 1, mirror) rotation(-incoming), multiplied out."""
+    cosine, sine, _ = np.moveaxis(geometry.from_polar(lengths, 0.0), -1, 0)
+    ahead = np.stack([np.cos(outgoing), np.sin(outgoing)], axis=-1)
+    aside = np.stack([-ahead[:, 1], ahead[:, 0]], axis=-1)
+    back = -np.stack([np.cos(incoming), np.sin(incoming)], axis=-1)
+    across = mirror[:, None] * np.stack([-back[:, 1], back[:, 0]], axis=-1)
+    product = np.empty((len(lengths), 3, 3))
+    product[:, 0, 0] = cosine
+    product[:, 1:, 0] = sine[:, None] * ahead
+    product[:, 0, 1:] = -geometry.curvature * sine[:, None] * back
+    product[:, 1:, 1:] = (cosine[:, None] * ahead)[:, :, None] * back[:, None, :] + aside[:, :, None] * across[
+        :, None, :
+    ]
+    return product
+
+
+@njit(cache=True)
+def _labels(frames, inverses, steps, tail, head):  # type: ignore[no-untyped-def]
+    """frames[tail] steps inverses[head], (E, 3, 3)."""
+    labels = np.empty_like(steps)
+    half = np.empty((3, 3))
+    for edge in range(len(steps)):
+        a, b, c = frames[tail[edge]], steps[edge], inverses[head[edge]]
+        for i in range(3):
+            for j in range(3):
+                half[i, j] = a[i, 0] * b[0, j] + a[i, 1] * b[1, j] + a[i, 2] * b[2, j]
+        for i in range(3):
+            for j in range(3):
+                labels[edge, i, j] = half[i, 0] * c[0, j] + half[i, 1] * c[1, j] + half[i, 2] * c[2, j]
+    return labels
 
 
 def _patch_frames(
@@ -128,45 +169,46 @@ def _patch_frames(
     """
     scale = 1.5 / max(mesh.diagonal, np.finfo(float).tiny)
     graph = edge_graph(mesh, lengths + scale * mesh.edge_lengths)
-    centres = farthest_points(graph, len(mesh.vertices), radius=patch_radius).chosen
-    forest = dijkstra_forest(graph, centres)
-    frames = np.broadcast_to(np.eye(3), (len(mesh.vertices), 3, 3)).copy()
-    for generation in _generations(forest.parent):
-        link = forest.link[generation]
-        halfedge = graph.halfedge[link]
-        step = steps[halfedge]
-        step = np.where(graph.backward[link][:, None, None], geometry.inverse(step), step)
-        frames[generation] = frames[forest.parent[generation]] @ step
-    return forest.owner, frames
+    forest = dijkstra_forest(graph, covering_points(graph, patch_radius))
+    last = np.flatnonzero(forest.link >= 0)
+    halfedge, backward = graph.halfedge[forest.link[last]], graph.backward[forest.link[last]]
+    onward = np.broadcast_to(np.eye(3), (len(mesh.vertices), 3, 3)).copy()
+    onward[last] = np.where(backward[:, None, None], geometry.inverse(steps[halfedge]), steps[halfedge])
+    _carry(forest.order, forest.parent, onward)
+    return forest.owner, onward
 
 
-def _generations(parent: Ints) -> list[Ints]:
-    """The vertices of a forest without its roots, by their number of steps from a root."""
-    depth = np.zeros(len(parent), dtype=np.intp)
-    active = np.flatnonzero(parent >= 0)
-    ancestor = parent.copy()
-    while len(active):
-        depth[active] += 1
-        ancestor[active] = parent[ancestor[active]]
-        active = active[ancestor[active] >= 0]
-    by_depth = np.argsort(depth, kind="stable")
-    bounds = np.searchsorted(depth[by_depth], np.arange(depth.max() + 2))
-    return [by_depth[bounds[d] : bounds[d + 1]] for d in range(1, int(depth.max()) + 1)]
+@njit(cache=True)
+def _carry(order, parent, frames):  # type: ignore[no-untyped-def]
+    """Frames seen from those of their parents become frames seen from their roots."""
+    own = np.empty((3, 3))
+    for vertex in order:
+        if parent[vertex] < 0:
+            continue
+        own[:] = frames[vertex]
+        before = frames[parent[vertex]]
+        for i in range(3):
+            for j in range(3):
+                total = before[i, 0] * own[0, j] + before[i, 1] * own[1, j] + before[i, 2] * own[2, j]
+                frames[vertex, i, j] = total
 
 
-def _classes(mesh: Polyhedron, geometry: Geometry, patch: Ints, labels: Floats) -> tuple[Ints, Ints, Ints, Floats]:
-    """The transition of every halfedge (H,), and the tails, heads and isometries of the transitions.
+def _classes(geometry: Geometry, tail: Ints, head: Ints, labels: Floats) -> tuple[Ints, Ints, Ints, Floats]:
+    """The transition of every edge (E,), and the tails, heads and isometries of the transitions.
 
-    Labels of one homotopy class between two patches agree up to rounding; the first halfedge in each round speaks for
-    its class. Transitions come in pairs, each followed by its inverse, after the identity.
+    tail, head: (E,), patches at the two ends. Labels of one homotopy class between two patches agree up to rounding;
+    the first edge in each round speaks for its class. Transitions come in pairs, each followed by its inverse, after
+    the identity.
     """
-    transition = np.zeros(len(mesh.tail), dtype=np.intp)
+    transition = np.zeros(len(tail), dtype=np.intp)
     tails, heads, isometries = [np.array([-1])], [np.array([-1])], [np.eye(3)[None]]
-    from_patch, to_patch = patch[mesh.tail], patch[mesh.head]
-    backward = from_patch > to_patch
-    upward = np.where(backward[:, None, None], geometry.inverse(labels), labels)
-    low, high = np.minimum(from_patch, to_patch), np.maximum(from_patch, to_patch)
-    trivial = (low == high) & (np.abs(upward - np.eye(3)).max(axis=(1, 2)) < _SAME)
+    backward = tail > head
+    upward = labels
+    upward[backward] = geometry.inverse(labels[backward])
+    low, high = np.minimum(tail, head), np.maximum(tail, head)
+    within = np.flatnonzero(low == high)
+    trivial = np.zeros(len(tail), dtype=np.bool_)
+    trivial[within] = np.abs(upward[within] - np.eye(3)).max(axis=(1, 2)) < _SAME
     todo = np.flatnonzero(~trivial)
     todo = todo[np.lexsort((todo, high[todo], low[todo]))]
     count = 1
@@ -190,6 +232,15 @@ def _classes(mesh: Polyhedron, geometry: Geometry, patch: Ints, labels: Floats) 
     return transition, np.concatenate(tails), np.concatenate(heads), np.concatenate(isometries)
 
 
+def _on_halfedges(mesh: Polyhedron, edges: Ints, transition: Ints) -> Ints:
+    """The transitions (H,) of both halfedges of every edge: the inverse on a twin that runs the other way."""
+    inverse = np.where(transition > 0, 1 + ((transition - 1) ^ 1), 0)
+    everywhere = np.empty(len(mesh.tail), dtype=np.intp)
+    everywhere[edges] = transition
+    everywhere[mesh.twin[edges]] = np.where(mesh.same[edges], transition, inverse)
+    return everywhere
+
+
 def _close(a: Floats, b: Floats) -> Bools:
     return np.asarray(np.abs(a - b).max(axis=(1, 2)) < _SAME * np.maximum(1.0, np.abs(b).max(axis=(1, 2))))
 
@@ -199,14 +250,18 @@ def with_patch_radii(triangulation: Triangulation) -> Triangulation:
     mesh, atlas = triangulation.polyhedron, triangulation.orbifold.atlas
     transition = triangulation.transition
     radius = np.zeros(atlas.patch_count)
-    own, far = triangulation.points[mesh.tail], triangulation.points[mesh.head]
-    back = atlas.isometry[atlas.inverse[transition]]
-    for vertex, x in (
-        (mesh.tail, own),
-        (mesh.tail, atlas.geometry.act(atlas.isometry[transition], far)),
-        (mesh.head, atlas.geometry.act(back, own)),
+    crossing = np.flatnonzero(transition)
+    parallel = crossing[mesh.same[crossing]]
+    tail, head = mesh.tail[crossing], mesh.head[crossing]
+    # Seen from the patch of its head a halfedge is its twin, or, where both run the same way, it is looked at itself.
+    there = atlas.isometry[transition[crossing]]
+    back = atlas.isometry[atlas.inverse[transition[parallel]]]
+    for patch, x in (
+        (triangulation.patch, triangulation.points),
+        (triangulation.patch[tail], atlas.geometry.act(there, triangulation.points[head])),
+        (triangulation.patch[mesh.head[parallel]], atlas.geometry.act(back, triangulation.points[mesh.tail[parallel]])),
     ):
-        np.maximum.at(radius, triangulation.patch[vertex], atlas.geometry.distance(atlas.geometry.origin, x))
+        np.maximum.at(radius, patch, atlas.geometry.distance(atlas.geometry.origin, x))
     if not np.isfinite(radius).all():
         raise MapError("the patches of X/H could not be laid out: an edge is too long; refine the mesh")
     orbifold = replace(triangulation.orbifold, atlas=replace(atlas, radius=radius))

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.linalg import lsqr
+from scipy.sparse import coo_array, csr_array, eye_array
+from scipy.sparse.linalg import splu
 
 from orbiframe import Geometry
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-_ROUNDS = 4
+_ROUNDS = 8
+_SHIFT = 1e-9
 
 
 def with_relations(geometry: Geometry, transition: Ints, isometry: Floats) -> Floats:
@@ -20,14 +24,16 @@ def with_relations(geometry: Geometry, transition: Ints, isometry: Floats) -> Fl
 
     transition: (H,), three for each triangle; isometries come in pairs of inverses 2k + 1, 2k + 2 after the identity.
     Each free one is multiplied by exp(xi); the relations are linear in xi up to second order, and the least xi is
-    found by LSQR to eight digits, again as long as the defect falls (Gauss-Newton).
+    found from the normal equations, factored once, again as long as the defect falls (Gauss-Newton). Turning and moving
+    the frame of a patch breaks no relation; a tiny shift of the matrix holds the frames still.
     """
     relations = _distinct_relations(transition)
     if not len(relations):
         return isometry
+    solve = _least_squares(_linearised(geometry, relations, isometry))
     best, defect = isometry, _defect(isometry, relations)
     for _ in range(_ROUNDS):
-        trial = _corrected(geometry, relations, best)
+        trial = _moved(geometry, best, solve(-_residual(best, relations)))
         new = _defect(trial, relations)
         if not new < defect:
             break
@@ -49,9 +55,22 @@ def _defect(isometry: Floats, relations: Ints) -> float:
     return float(np.abs(g[:, 0] @ g[:, 1] @ g[:, 2] - np.eye(3)).max())
 
 
-def _corrected(geometry: Geometry, relations: Ints, isometry: Floats) -> Floats:
+def _residual(isometry: Floats, relations: Ints) -> Floats:
     g = isometry[relations]
-    residual = _algebra_coordinates(g[:, 0] @ g[:, 1] @ g[:, 2] - np.eye(3))
+    return _algebra_coordinates(g[:, 0] @ g[:, 1] @ g[:, 2] - np.eye(3)).ravel()
+
+
+def _moved(geometry: Geometry, isometry: Floats, xi: Floats) -> Floats:
+    """Every free isometry times exp(xi), to first order, and its inverse."""
+    moved = geometry.nearest_isometry(isometry[1::2] @ (np.eye(3) + _algebra(geometry, xi.reshape(-1, 3))))
+    corrected = isometry.copy()
+    corrected[1::2], corrected[2::2] = moved, geometry.inverse(moved)
+    return corrected
+
+
+def _linearised(geometry: Geometry, relations: Ints, isometry: Floats) -> csr_array[Any]:
+    """The derivative of the residual by xi."""
+    g = isometry[relations]
     suffixes = [g[:, 1] @ g[:, 2], g[:, 2], np.broadcast_to(np.eye(3), g[:, 0].shape)]
     rows, columns, values = [], [], []
     for slot in range(3):
@@ -67,12 +86,17 @@ def _corrected(geometry: Geometry, relations: Ints, isometry: Floats) -> Floats:
         values.append(block[used].ravel())
     free = (len(isometry) - 1) // 2
     shape = (3 * len(relations), 3 * free)
-    matrix = coo_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape).tocsr()
-    xi = lsqr(matrix, -residual.ravel(), atol=1e-8, btol=1e-8, iter_lim=20000)[0].reshape(-1, 3)
-    moved = geometry.nearest_isometry(isometry[1::2] @ (np.eye(3) + _algebra(geometry, xi)))
-    corrected = isometry.copy()
-    corrected[1::2], corrected[2::2] = moved, geometry.inverse(moved)
-    return corrected
+    place = np.concatenate(rows), np.concatenate(columns)
+    return coo_array((np.concatenate(values), place), shape=shape).tocsr()
+
+
+def _least_squares(matrix: csr_array[Any]) -> Callable[[Floats], Floats]:
+    """For a right side the least vector that comes as near to a solution as any, to about eight digits."""
+    normal = (matrix.T @ matrix).tocsc()
+    shifted = normal + _SHIFT * float(normal.diagonal().mean()) * eye_array(normal.shape[0], format="csc")
+    options = {"SymmetricMode": True}
+    factors = splu(shifted.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+    return lambda right: np.asarray(factors.solve(matrix.T @ right))
 
 
 def _algebra(geometry: Geometry, xi: Floats) -> Floats:

@@ -8,7 +8,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from orbiframe.polyhedron import Polyhedron
-from orbiframe.spacing import Graph, dijkstra_forest, edge_graph, farthest_points
+from orbiframe.spacing import Graph, covering_points, dijkstra_forest, edge_graph, farthest_points
 
 
 def bumpy_torus(n: int, m: int) -> Polyhedron:
@@ -88,6 +88,22 @@ def test_a_radius_stops_the_choice_as_soon_as_it_covers(graph: Graph) -> None:
     spacing = farthest_points(graph, 10**6, radius=0.7)
     assert spacing.distance.max() < 0.7
     assert all_distances(graph)[spacing.chosen[:-1]].min(axis=0).max() >= 0.7
+
+
+@pytest.mark.parametrize("radius", [0.2, 0.7, 100.0])
+def test_covering_points_are_apart_and_cover(graph: Graph, radius: float) -> None:
+    table, chosen = all_distances(graph), covering_points(graph, radius)
+    assert table[chosen].min(axis=0).max() < radius
+    assert (table[np.ix_(chosen, chosen)] + 1e6 * np.eye(len(chosen))).min() >= radius * (1 - 1e-14)
+    # The first one, and each next one as soon as it is too far from all before it: nothing else is left out.
+    for k in range(len(chosen)):
+        skipped = np.arange(chosen[k - 1] + 1 if k else 0, chosen[k])
+        assert (table[np.ix_(chosen[:k], skipped)].min(axis=0, initial=np.inf) < radius).all()
+
+
+def test_covering_points_of_every_component() -> None:
+    two = Polyhedron.from_faces(np.random.default_rng(0).normal(size=(6, 3)), [[0, 1, 2], [3, 4, 5]])
+    np.testing.assert_array_equal(covering_points(edge_graph(two), 1e3), [0, 3])
 
 
 def test_every_vertex_once_and_no_more(graph: Graph) -> None:
