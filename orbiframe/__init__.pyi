@@ -11,11 +11,17 @@ from orbiframe.bernstein import (
     symmetric_power as symmetric_power,
 )
 from orbiframe.bisection import bisected as bisected
+from orbiframe.cell_triangulation import cell_triangulation as cell_triangulation
 from orbiframe.config import Config as Config
 from orbiframe.confinement import confined_read as confined_read, confined_write as confined_write
+from orbiframe.crowding import crowding_of as crowding_of
+from orbiframe.delaunay import (
+    SiteTriangulation as SiteTriangulation,
+    delaunay as delaunay,
+    delaunay_of_vertices as delaunay_of_vertices,
+)
 from orbiframe.domains import domain_for as domain_for
 from orbiframe.element_basis import ElementBasis as ElementBasis
-from orbiframe.crowding import crowding_of as crowding_of
 from orbiframe.errors import (
     ConfigError as ConfigError,
     FitError as FitError,
@@ -61,6 +67,7 @@ from orbiframe.spacing import (
     farthest_points as farthest_points,
 )
 from orbiframe.spin import Spin as Spin
+from orbiframe.spline_domain import spline_domain as spline_domain
 from orbiframe.surface import OrbifoldSurface as OrbifoldSurface
 from orbiframe.surface_file import load_surface as load_surface, save_surface as save_surface
 from orbiframe.topology import (

@@ -1,0 +1,33 @@
+"""The domain of splines: a triangulation of X/H of any density, chosen apart from the mesh that made the map."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from orbiframe.delaunay import delaunay_of_vertices
+from orbiframe.errors import FitError
+from orbiframe.geodesic_triangulation import GeodesicTriangulation
+from orbiframe.spacing import edge_graph, farthest_points
+from orbiframe.triangulation import Triangulation
+
+
+def spline_domain(triangulation: Triangulation, vertices: int) -> GeodesicTriangulation:
+    """The Delaunay triangulation of X/H with `vertices` sites, spread evenly over the surface in space.
+
+    The sites are vertices of the mesh, farthest points by the lengths of edges in space from the vertex farthest from
+    the centroid on; the triangles are Delaunay in X. The result is a triangulation of X/H with positive triangles,
+    down to one vertex (on the sphere and the projective plane down to what its geodesic triangles need). Raises
+    FitError if the mesh has fewer distinct vertices, or the sphere too few sites; MapError if the map has folds.
+    """
+    x = triangulation.polyhedron.vertices
+    first = int(np.argmax(np.linalg.norm(x - x.mean(axis=0), axis=1)))
+    chosen = farthest_points(edge_graph(triangulation.polyhedron), vertices, first=first).chosen
+    if vertices < 1 or len(chosen) < vertices:
+        raise FitError(
+            f"{vertices} vertices are wanted for the splines, and the mesh has {len(chosen)} distinct ones; take at "
+            "least 1 and at most as many, or refine the mesh first"
+        )
+    start = GeodesicTriangulation.of_map(triangulation)
+    number = np.empty(len(x), dtype=np.intp)
+    number[triangulation.polyhedron.triangles] = start.vertex
+    return delaunay_of_vertices(start, number[chosen]).triangulation
