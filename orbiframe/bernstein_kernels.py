@@ -16,13 +16,12 @@ Ints = NDArray[np.intp]
 
 
 class Tables(NamedTuple):
-    """Of the degrees d, d - 1, d - 2 and d - 3 (negative ones as 0): exponents, multinomials, numbers one degree up.
+    """Of the degrees d, d - 1, d - 2 and d - 3 (none of negative ones): multinomials, numbers of exponents one degree up.
 
-    exponents: (4, n, 3); multinomials: (4, n); raised: (n, 3), the number of a + e_i, the same in every degree; counts:
-    (4,), how many exponents each degree has, 0 for a negative one.
+    multinomials: (4, n); raised: (n, 3), the number of a + e_i, the same in every degree; counts: (4,), how many
+    exponents each degree has, 0 for a negative one.
     """
 
-    exponents: Ints
     multinomials: Floats
     raised: Ints
     counts: Ints
@@ -32,47 +31,93 @@ class Tables(NamedTuple):
 def polynomial_tables(degree: int) -> Tables:
     """The tables that the kernels read."""
     count = coefficient_count(degree)
-    powers, factors = np.zeros((4, count, 3), dtype=np.intp), np.zeros((4, count))
+    factors = np.zeros((4, count))
     counts = np.array([coefficient_count(k) if k >= 0 else 0 for k in range(degree, degree - 4, -1)], dtype=np.intp)
     for level in range(min(4, degree + 1)):
-        powers[level, : counts[level]] = exponents(degree - level)
         factors[level, : counts[level]] = multinomials(degree - level)
     raised = [[exponent_number(a[1] + (i == 1), a[2] + (i == 2)) for i in range(3)] for a in exponents(degree)]
-    return Tables(powers, factors, np.array(raised, dtype=np.intp), counts)
+    return Tables(factors, np.array(raised, dtype=np.intp), counts)
 
 
 @njit(cache=True, inline="always")
-def _lambda(matrix, columns, k, out):  # type: ignore[no-untyped-def]
-    for i in range(3):
-        out[i] = matrix[i, 0] * columns[0, k] + matrix[i, 1] * columns[1, k] + matrix[i, 2] * columns[2, k]
+def _height(inverse, f, m, i, x0, x1, x2):  # type: ignore[no-untyped-def]
+    return inverse[f, m, i, 0] * x0 + inverse[f, m, i, 1] * x1 + inverse[f, m, i, 2] * x2
 
 
-@njit(cache=True)
-def _cell(inverse, columns, out):  # type: ignore[no-untyped-def]
-    """The micro triangle that holds a point, or the one it is least outside of; its coordinates go to `out`."""
+@njit(cache=True, inline="always")
+def _all_heights(inverse, f, m, x0, x1, x2):  # type: ignore[no-untyped-def]
+    return (
+        _height(inverse, f, m, 0, x0, x1, x2),
+        _height(inverse, f, m, 1, x0, x1, x2),
+        _height(inverse, f, m, 2, x0, x1, x2),
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _cell(inverse, f, x0, x1, x2):  # type: ignore[no-untyped-def]
+    """The micro triangle that holds a point, or the one it is least outside of."""
     best, least = 0, -np.inf
-    if len(inverse) > 1:
-        for m in range(len(inverse)):
-            _lambda(inverse[m], columns, 0, out)
-            height = min(out[0], min(out[1], out[2])) / abs(out[0] + out[1] + out[2])
-            if height > least:
-                best, least = m, height
-            if least >= 0:
-                break
-    _lambda(inverse[best], columns, 0, out)
+    for m in range(inverse.shape[1]):
+        a, b, c = _all_heights(inverse, f, m, x0, x1, x2)
+        height = min(a, min(b, c)) / abs(a + b + c)
+        if height >= 0:
+            return m
+        if height > least:
+            best, least = m, height
     return best
+
+
+@njit(cache=True, error_model="numpy")
+def _fan_cell(fan, f, a, b, c):  # type: ignore[no-untyped-def]
+    """The micro triangle of a fan at coordinates in the whole triangle: edge e, or 2 e and 2 e + 1 beside its R."""
+    r0, r1, r2 = a * fan[f, 0], b * fan[f, 1], c * fan[f, 2]
+    if r2 <= r0 and r2 <= r1:
+        edge, start, end, height = 0, a - r2 / fan[f, 0], b - r2 / fan[f, 1], r2
+    elif r0 <= r1:
+        edge, start, end, height = 1, b - r0 / fan[f, 1], c - r0 / fan[f, 2], r0
+    else:
+        edge, start, end, height = 2, c - r1 / fan[f, 2], a - r1 / fan[f, 0], r1
+    if fan.shape[1] == 3:
+        return edge, start, end, height
+    mu, nu = fan[f, 3 + 2 * edge], fan[f, 4 + 2 * edge]
+    if start * nu >= end * mu:
+        return 2 * edge, start - end / nu * mu, end / nu, height
+    return 2 * edge + 1, end - start / mu * nu, start / mu, height
+
+
+@njit(cache=True, error_model="numpy")
+def _fan_coordinates(fan, f, cell, a, b, c):  # type: ignore[no-untyped-def]
+    """Coordinates in a micro triangle of a fan from those in the whole triangle; linear in them."""
+    edge = cell if fan.shape[1] == 3 else cell // 2
+    if edge == 0:
+        height, start, end = c * fan[f, 2], a - c * fan[f, 2] / fan[f, 0], b - c * fan[f, 2] / fan[f, 1]
+    elif edge == 1:
+        height, start, end = a * fan[f, 0], b - a * fan[f, 0] / fan[f, 1], c - a * fan[f, 0] / fan[f, 2]
+    else:
+        height, start, end = b * fan[f, 1], c - b * fan[f, 1] / fan[f, 2], a - b * fan[f, 1] / fan[f, 0]
+    if fan.shape[1] == 3:
+        return start, end, height
+    mu, nu = fan[f, 3 + 2 * edge], fan[f, 4 + 2 * edge]
+    if cell % 2 == 0:
+        return start - end / nu * mu, end / nu, height
+    return end - start / mu * nu, start / mu, height
 
 
 @njit(cache=True)
 def _values(tables, level, degree, point, powers, out):  # type: ignore[no-untyped-def]
     """The Bernstein polynomials of degree d - level at a point, by tabulated powers."""
+    top = degree - level
     for i in range(3):
-        powers[i, 0] = 1.0
-        for k in range(degree - level):
-            powers[i, k + 1] = powers[i, k] * point[i]
-    for a in range(tables.counts[level]):
-        e = tables.exponents[level, a]
-        out[a] = tables.multinomials[level, a] * powers[0, e[0]] * powers[1, e[1]] * powers[2, e[2]]
+        power, base = 1.0, point[i]
+        for k in range(top + 1):
+            powers[i, k] = power
+            power *= base
+    a = 0
+    for total in range(top + 1):
+        for third in range(total + 1):
+            product = powers[0, top - total] * powers[1, total - third] * powers[2, third]
+            out[a] = tables.multinomials[level, a] * product
+            a += 1
 
 
 @njit(cache=True)
@@ -133,50 +178,89 @@ def _jet(shape, tables, lam, kinds, work, powers, jet):  # type: ignore[no-untyp
 def fill_rows(place, matrix, tables, row_start, values):  # type: ignore[no-untyped-def]
     """The rows of design matrices: the Bernstein jets at every point times the rows of C of its micro triangle.
 
-    place: triangles, columns (n, 3, 1 or 3), inverses of the micro triangles, (curvature, degree); matrix: row
-    starts, values and places in the rows of the result of the nonzeros of C; row_start: (points + 1,); values:
-    (kinds, nonzeros), zero before.
+    place: the `Location` of the points, inverses and fans of the micro triangles, how many there are in a triangle,
+    (curvature, degree); matrix: row starts, values and places in the rows of the result of the nonzeros of C;
+    row_start: (points + 1,); values: (kinds, nonzeros), zero before.
     """
-    face, columns, inverse, shape = place
+    (order, face, columns), inverse, fan, cells, shape = place
     start, data, slot = matrix
-    kinds, count, cells = len(values), tables.counts[0], inverse.shape[1]
+    kinds, count = len(values), tables.counts[0]
     work, powers = np.empty((3, count)), np.empty((3, shape[1] + 1))
     jet, lam = np.empty((kinds, count)), np.empty((3, 3))
-    for n in range(len(face)):
-        cell = _coordinates(inverse[face[n]], columns[n], kinds, lam)
+    for n in range(len(order)):
+        cell = _coordinates(inverse, fan, face[n], columns, n, kinds, lam)
         _jet(shape, tables, lam, kinds, work, powers, jet)
         row = (face[n] * cells + cell) * count
         for a in range(count):
             for k in range(start[row + a], start[row + a + 1]):
-                where = row_start[n] + slot[k]
+                where = row_start[order[n]] + slot[k]
                 for kind in range(kinds):
                     values[kind, where] += jet[kind, a] * data[k]
 
 
 @njit(cache=True)
-def _coordinates(inverse, columns, kinds, lam):  # type: ignore[no-untyped-def]
-    """The micro triangle of a point; rows of `lam`: the coordinates of the point and of its frame vectors."""
-    cell = _cell(inverse, columns, lam[0])
+def _coordinates(inverse, fan, f, columns, n, kinds, lam):  # type: ignore[no-untyped-def]
+    """The micro triangle of point n; rows of `lam`: the coordinates of the point and of its frame vectors.
+
+    inverse: of the micro triangles, (F, m, 3, 3), or of the whole triangles, (F, 1, 3, 3), where they are fans.
+    """
+    whole = fan.shape[1] > 0
+    x0, x1, x2 = columns[n, 0, 0], columns[n, 1, 0], columns[n, 2, 0]
+    cell = 0 if whole else _cell(inverse, f, x0, x1, x2)
+    a, b, c = _all_heights(inverse, f, cell, x0, x1, x2)
+    if whole:
+        cell, a, b, c = _fan_cell(fan, f, a, b, c)
+    lam[0, 0], lam[0, 1], lam[0, 2] = a, b, c
     if kinds > 1:
-        _lambda(inverse[cell], columns, 1, lam[1])
-        _lambda(inverse[cell], columns, 2, lam[2])
+        for k in (1, 2):
+            a, b, c = _all_heights(
+                inverse, f, 0 if whole else cell, columns[n, 0, k], columns[n, 1, k], columns[n, 2, k]
+            )
+            if whole:
+                a, b, c = _fan_coordinates(fan, f, cell, a, b, c)
+            lam[k, 0], lam[k, 1], lam[k, 2] = a, b, c
     return cell
 
 
 @njit(cache=True)
 def evaluate_nets(place, nets, tables, values):  # type: ignore[no-untyped-def]
     """Jets of functions with given Bernstein coefficients: nets (F, m, n, q), values (kinds, points, q)."""
-    face, columns, inverse, shape = place
+    (order, face, columns), inverse, fan, _, shape = place
     kinds, count, width = len(values), tables.counts[0], nets.shape[3]
     work, powers = np.empty((3, count)), np.empty((3, shape[1] + 1))
     jet, lam = np.empty((kinds, count)), np.empty((3, 3))
-    for n in range(len(face)):
-        cell = _coordinates(inverse[face[n]], columns[n], kinds, lam)
+    for n in range(len(order)):
+        cell = _coordinates(inverse, fan, face[n], columns, n, kinds, lam)
         _jet(shape, tables, lam, kinds, work, powers, jet)
-        net = nets[face[n], cell]
         for kind in range(kinds):
             for q in range(width):
-                values[kind, n, q] = 0.0
-            for a in range(count):
+                total = 0.0
+                for a in range(count):
+                    total += jet[kind, a] * nets[face[n], cell, a, q]
+                values[kind, order[n], q] = total
+
+
+@njit(cache=True)
+def evaluate_values(place, nets, tables, values):  # type: ignore[no-untyped-def]
+    """The values alone of functions with given Bernstein coefficients: nets (F, m, n, q), values (points, q)."""
+    (order, face, columns), inverse, fan, _, shape = place
+    degree, width = shape[1], nets.shape[3]
+    powers, lam = np.empty((3, degree + 1)), np.empty((3, 3))
+    for n in range(len(order)):
+        f, out = face[n], order[n]
+        cell = _coordinates(inverse, fan, f, columns, n, 1, lam)
+        for i in range(3):
+            power, base = 1.0, lam[0, i]
+            for k in range(degree + 1):
+                powers[i, k] = power
+                power *= base
+        for q in range(width):
+            values[out, q] = 0.0
+        a = 0
+        for total in range(degree + 1):
+            for third in range(total + 1):
+                product = powers[0, degree - total] * powers[1, total - third] * powers[2, third]
+                factor = tables.multinomials[0, a] * product
                 for q in range(width):
-                    values[kind, n, q] += jet[kind, a] * net[a, q]
+                    values[out, q] += factor * nets[f, cell, a, q]
+                a += 1

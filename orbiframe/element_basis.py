@@ -11,10 +11,10 @@ from scipy.sparse import csr_array
 from orbiframe.atlas import Points
 from orbiframe.basis import JET_KINDS, DifferentiableBasis
 from orbiframe.bernstein import coefficient_count
-from orbiframe.bernstein_kernels import evaluate_nets, fill_rows, polynomial_tables
+from orbiframe.bernstein_kernels import evaluate_nets, evaluate_values, fill_rows, polynomial_tables
 from orbiframe.galerkin import nearest_to_one
 from orbiframe.geodesic_triangulation import GeodesicTriangulation
-from orbiframe.location import Locator
+from orbiframe.location import Location, Locator
 from orbiframe.quotient import divide_jets
 
 Floats = NDArray[np.float64]
@@ -63,27 +63,21 @@ class ElementBasis(DifferentiableBasis):
 
     def jet_matrices(self, points: Points, order: int) -> list[csr_array]:
         """See `DifferentiableBasis`."""
-        face, columns = self._located(points, order)
+        location = self.locator.locate(points, frames=order > 0)
+        face = np.empty_like(location.face)
+        face[location.order] = location.face
         start, column, slot = self._pattern
         count = np.diff(start)[face]
         row_start = np.concatenate([[0], np.cumsum(count)])
         values = np.zeros((JET_KINDS[order], row_start[-1]))
-        fill_rows(
-            (face, columns, self._inverse, self._shape),
-            (self.matrix.indptr, self.matrix.data, slot),
-            polynomial_tables(self.degree),
-            row_start,
-            values,
-        )
+        matrix = self.matrix.indptr, self.matrix.data, slot
+        fill_rows((location, *self._search, self._shape), matrix, polynomial_tables(self.degree), row_start, values)
         if self.weights is not None:
-            values = divide_jets(
-                values, self._polynomial_jets(face, columns, self.weights[:, None], order)[..., 0], count
-            )
+            values = divide_jets(values, self._polynomial_jets(location, self.weights[:, None], order)[..., 0], count)
         within = np.arange(row_start[-1]) - np.repeat(row_start[:-1] - start[face], count)
         index = np.int32 if row_start[-1] < 2**31 else np.int64
-        columns_of_rows, pattern = column[within].astype(index), row_start.astype(index)
-        shape = (len(face), self.size)
-        return [csr_array((row, columns_of_rows, pattern), shape=shape) for row in values]
+        columns, pattern = column[within].astype(index), row_start.astype(index)
+        return [csr_array((row, columns, pattern), shape=(len(face), self.size)) for row in values]
 
     def net(self, coefficients: Floats) -> Floats:
         """The Bernstein coefficients of q functions from their coefficients (size, q): (F, m, n, q)."""
@@ -95,19 +89,21 @@ class ElementBasis(DifferentiableBasis):
 
     def jets(self, points: Points, coefficients: Floats, order: int) -> Floats:
         """See `DifferentiableBasis`; evaluated from the Bernstein coefficients, without a design matrix."""
-        face, columns = self._located(points, order)
+        location = self.locator.locate(points, frames=order > 0)
         if self.weights is None:
-            return self._polynomial_jets(face, columns, coefficients, order)
-        both = self._polynomial_jets(face, columns, np.column_stack([coefficients, self.weights]), order)
+            return self._polynomial_jets(location, coefficients, order)
+        both = self._polynomial_jets(location, np.column_stack([coefficients, self.weights]), order)
         jets, total = np.ascontiguousarray(both[..., :-1]), both[..., -1]
-        width = np.full(len(face), jets.shape[2])
+        width = np.full(jets.shape[1], jets.shape[2])
         return divide_jets(jets.reshape(len(jets), -1), total, width).reshape(jets.shape)
 
-    def _polynomial_jets(self, face: Ints, columns: Floats, coefficients: Floats, order: int) -> Floats:
-        values = np.empty((JET_KINDS[order], len(face), coefficients.shape[1]))
-        evaluate_nets(
-            (face, columns, self._inverse, self._shape), self.net(coefficients), polynomial_tables(self.degree), values
-        )
+    def _polynomial_jets(self, location: Location, coefficients: Floats, order: int) -> Floats:
+        values = np.empty((JET_KINDS[order], len(location.face), coefficients.shape[1]))
+        place, tables = (location, *self._search, self._shape), polynomial_tables(self.degree)
+        if order == 0:
+            evaluate_values(place, self.net(coefficients), tables, values[0])
+        else:
+            evaluate_nets(place, self.net(coefficients), tables, values)
         return np.asarray(values)
 
     @cached_property
@@ -115,21 +111,17 @@ class ElementBasis(DifferentiableBasis):
         """Finds the triangle of a point."""
         return Locator(self.domain)
 
-    def _located(self, points: Points, order: int) -> tuple[Ints, Floats]:
-        if order == 0:
-            face, x = self.locator.locate(points)
-            return face, x[:, :, None]
-        return self.locator.locate_frames(points)
-
     @property
     def _shape(self) -> tuple[int, int]:
         """The curvature and the degree."""
         return self.domain.geometry.curvature, self.degree
 
     @cached_property
-    def _inverse(self) -> Floats:
-        """The matrices that take a point to its barycentric coordinates in every micro triangle, (F, m, 3, 3)."""
-        return np.ascontiguousarray(np.linalg.inv(np.swapaxes(self.cells, -1, -2)))
+    def _search(self) -> tuple[Floats, Floats, int]:
+        """How to find micro triangles: matrices to barycentric coordinates, fans (see `_fans`), how many there are."""
+        fans = _fans(self.domain, self.cells)
+        cells = self.domain.corners[:, None] if fans.shape[1] else self.cells
+        return np.ascontiguousarray(np.linalg.inv(np.swapaxes(cells, -1, -2))), fans, self.cells.shape[1]
 
     @cached_property
     def _pattern(self) -> tuple[Ints, Ints, Ints]:
@@ -142,3 +134,26 @@ class ElementBasis(DifferentiableBasis):
         start = np.searchsorted(face, np.arange(len(self.cells) + 1))
         slot = place - start[row // rows_per_face]
         return start, column, slot.astype(np.int32)
+
+
+def _fans(domain: GeodesicTriangulation, cells: Floats) -> Floats:
+    """Splits that are fans about a point Z, as numbers: (F, 3) or (F, 9), and (F, 0) for any other split.
+
+    Three micro triangles (v_c, v_(c + 1), Z), or six: 2 c and 2 c + 1 are (v_c, R_c, Z) and (v_(c + 1), R_c, Z). Three
+    numbers 1 / z_i with Z = sum z_i v_i, and for R_c = mu v_c + nu v_(c + 1) the pairs mu, nu.
+    """
+    x = domain.corners
+    ends = np.stack([x, np.roll(x, -1, axis=1)], axis=2).reshape(-1, 6, 3)
+    six, three = cells.shape[1] == 6, cells.shape[1] == 3
+    if not (
+        (six and np.array_equal(cells[:, :, 0], ends))
+        or (three and np.array_equal(cells[:, :, 0], x) and np.array_equal(cells[:, :, 1], ends[:, 1::2]))
+    ):
+        return np.zeros((len(cells), 0))
+    inverse = np.linalg.inv(np.swapaxes(x, 1, 2))
+    z = np.einsum("fij,fj->fi", inverse, cells[:, 0, 2])
+    if three:
+        return np.ascontiguousarray(1 / z)
+    r = np.einsum("fij,fcj->fci", inverse, cells[:, ::2, 1])
+    share = np.stack([r[:, range(3), range(3)], r[:, range(3), (1, 2, 0)]], axis=2)
+    return np.ascontiguousarray(np.concatenate([1 / z, share.reshape(-1, 6)], axis=1))
