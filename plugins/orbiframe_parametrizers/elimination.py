@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 _DIGITS = 1e-5
-_PATIENCE = 25
+PATIENCE = 25
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,23 +125,23 @@ class Successive:
         """
         if self._near is not None:
             matrix = _symmetric(*edges, entries, diagonal)
-            answer = by_conjugate_gradients(matrix, right, self._near, tolerance=_DIGITS, steps=_PATIENCE)
-            if answer is not None:
+            answer, found = by_conjugate_gradients(matrix, right, self._near, tolerance=_DIGITS, steps=PATIENCE)
+            if found:
                 return answer
         self._near = Elimination.of(mesh).solver(*edges, entries, diagonal)
         return self._near(right)
 
 
 def by_conjugate_gradients(
-    matrix: csr_array[Any], right: Floats, near: Callable[[Floats], Floats], *, tolerance: float, steps: int
-) -> Floats | None:
-    """The solution of a positive definite system to a relative tolerance, or None if that needs more steps.
+    matrix: Any, right: Floats, near: Callable[[Floats], Floats], *, tolerance: float, steps: int
+) -> tuple[Floats, bool]:
+    """The solution of a positive definite system, and whether so many steps bring it to a relative tolerance.
 
     near: solves a system whose matrix is near to this one.
     """
     inverse = LinearOperator(matrix.shape, matvec=lambda r: near(r.ravel()), dtype=np.float64)
     answer, failure = cg(matrix, right, rtol=tolerance, maxiter=steps, M=inverse)
-    return None if failure else np.asarray(answer)
+    return np.asarray(answer), failure == 0
 
 
 def _symmetric(tail: Ints, head: Ints, entries: Floats, diagonal: Floats) -> csr_array[Any]:

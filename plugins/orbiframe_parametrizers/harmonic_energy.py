@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csc_array
-from scipy.sparse.linalg import LinearOperator, cg
+from scipy.sparse import bsr_array
 
 from orbiframe import Geometry, MapError, Triangulation
-from orbiframe_parametrizers.elimination import Elimination, factorised
+from orbiframe_parametrizers.elimination import PATIENCE, Elimination, by_conjugate_gradients, factorised
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 _STEPS = 40
+_LIMIT = 100
 _DECREMENT = 1e-10
 _SMALLEST_STEP = 1e-6
 
@@ -84,17 +84,31 @@ class HarmonicEnergy:
         self.geometry: Geometry = orbifold.geometry
         edges = np.flatnonzero(mesh.representative)
         self.tail, self.head = mesh.tail[edges], mesh.head[edges]
-        self.isometry = orbifold.atlas.isometry[start.transition[edges]]
+        # Most edges stay in their patch, where both ends are seen from one frame.
+        self.crossing = np.flatnonzero(start.transition[edges])
+        self.isometry = orbifold.atlas.isometry[start.transition[edges[self.crossing]]]
         self.weights = weights[edges]
         self.count = len(mesh.vertices)
         self.elimination = Elimination.of(mesh)
+        every = np.arange(self.count)
+        rows, columns = np.concatenate([self.tail, self.head, every]), np.concatenate([self.head, self.tail, every])
+        self._by_row = np.argsort(rows, kind="stable")
+        self._columns = columns[self._by_row]
+        self._starts = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=self.count))])
+        self._near: Callable[[Floats], Floats] | None = None
         # Frames that all have one orientation make the Hessian nearly complex linear: see newton_step.
         self.complex = bool(orbifold.orientable and (self.geometry.parity(orbifold.atlas.isometry) > 0).all())
 
     def value(self, points: Floats) -> float:
         """The energy of points (V, 3)."""
-        far = self.geometry.act(self.isometry, points[self.head])
-        return float(self.weights @ self.geometry.distance(points[self.tail], far) ** 2) / 2
+        return float(self.weights @ self.geometry.distance(points[self.tail], self._heads(points)) ** 2) / 2
+
+    def _heads(self, points: Floats) -> Floats:
+        """The heads of the edges (E, 3), or vectors there (E, 3, n), seen from the patches of their tails."""
+        seen = points[self.head]
+        moved = seen[self.crossing].reshape(len(self.crossing), 3, -1)
+        seen[self.crossing] = (self.isometry @ moved).reshape(seen[self.crossing].shape)
+        return seen
 
     def moved(self, points: Floats, step: Floats) -> Floats:
         """The points after a step (V, 2), given in the frames at the points, along geodesics."""
@@ -104,10 +118,10 @@ class HarmonicEnergy:
     def terms(self, points: Floats) -> Terms:
         """The derivatives of every term, without those of the edges' common sum."""
         geometry = self.geometry
-        here, there = points[self.tail], geometry.act(self.isometry, points[self.head])
+        here, there = points[self.tail], self._heads(points)
         frame = geometry.frame(points)
         at_tail = frame[self.tail]
-        at_head = self.isometry @ frame[self.head]
+        at_head = self._heads(frame)
         form = np.array([geometry.curvature, 1.0, 1.0])
         chord = geometry.chord(here, there)
         tail = -np.einsum("eia,ei->ea", at_tail, form * chord)
@@ -131,16 +145,18 @@ class HarmonicEnergy:
 
         The real system of size 2V is solved by conjugate gradients. The preconditioner is the complex linear part of
         the Hessian, one Hermitian system of size V, four times cheaper to factor than the real one; without a
-        complex structure (nonorientable) the real matrix itself is factored.
+        complex structure (nonorientable) the real matrix itself is factored. Factors serve the next steps too, as long
+        as few iterations suffice.
         """
         terms = self.terms(points)
-        right = -self.gradient(terms)[self.elimination.order].ravel()
-        hessian = self.hessian(terms)
-        solve = self._hermitian_solver(terms) if self.complex else factorised(hessian).solve
-        shape = (2 * self.count, 2 * self.count)
-        inverse = LinearOperator(shape, matvec=lambda r: solve(r.ravel()), dtype=np.float64)
-        answer, _ = cg(hessian.tocsr(), right, rtol=tolerance, maxiter=100, M=inverse)
-        return answer.reshape(-1, 2)[self.elimination.place], float(right @ answer)
+        right, hessian = -self.gradient(terms).ravel(), self.hessian(terms)
+        found = False
+        if self._near is not None:
+            answer, found = by_conjugate_gradients(hessian, right, self._near, tolerance=tolerance, steps=PATIENCE)
+        if not found:
+            self._near = self._hermitian_solver(terms) if self.complex else self._real_solver(hessian)
+            answer, _ = by_conjugate_gradients(hessian, right, self._near, tolerance=tolerance, steps=_LIMIT)
+        return answer.reshape(-1, 2), float(right @ answer)
 
     def gradient(self, terms: Terms) -> Floats:
         """The gradient in the frames at the points, (V, 2)."""
@@ -148,33 +164,37 @@ class HarmonicEnergy:
         parts = np.concatenate([terms.tail, terms.head])
         return np.stack([np.bincount(ends, weights=part, minlength=self.count) for part in parts.T], axis=1)
 
-    def _shift(self, blocks: Floats) -> float:
-        """In E^2 translations change nothing: a tiny shift makes the matrix definite and leaves the step as it is."""
-        return 1e-10 * float(np.abs(blocks).mean()) if self.geometry.curvature == 0 else 0.0
-
-    def hessian(self, terms: Terms) -> csc_array[Any]:
-        """The Hessian (2V, 2V) in elimination order."""
-        i, j = self.elimination.place[self.tail], self.elimination.place[self.head]
+    def hessian(self, terms: Terms) -> bsr_array[Any]:
+        """The Hessian (2V, 2V), with rows in the order of the vertices."""
         turned = np.swapaxes(terms.tail_head, 1, 2)
-        blocks = np.concatenate([terms.tail_tail, terms.head_head, terms.tail_head, turned])
-        row, column = np.concatenate([i, j, i, j]), np.concatenate([i, j, j, i])
-        axis = np.arange(2)
-        rows = np.broadcast_to((2 * row)[:, None, None] + axis[:, None], blocks.shape)
-        columns = np.broadcast_to((2 * column)[:, None, None] + axis, blocks.shape)
-        every = np.arange(2 * self.count)
-        data = np.append(blocks.ravel(), np.full(2 * self.count, self._shift(blocks)))
-        place = (np.append(rows.ravel(), every), np.append(columns.ravel(), every))
-        return coo_array((data, place), shape=(2 * self.count, 2 * self.count)).tocsc()
+        blocks = np.concatenate([terms.tail_head, turned, self._diagonal(terms)])
+        return bsr_array((blocks[self._by_row], self._columns, self._starts), shape=(2 * self.count, 2 * self.count))
+
+    def _diagonal(self, terms: Terms) -> Floats:
+        """The blocks (V, 2, 2) on the diagonal.
+
+        In E^2 translations change nothing: a tiny shift makes the matrix definite and leaves the step as it is.
+        """
+        ends = np.concatenate([self.tail, self.head])
+        parts = np.concatenate([terms.tail_tail, terms.head_head]).reshape(-1, 4)
+        sums = [np.bincount(ends, weights=parts[:, k], minlength=self.count) for k in (0, 1, 3)]
+        shift = 1e-10 * float(np.abs(parts).mean()) if self.geometry.curvature == 0 else 0.0
+        return np.stack([sums[0] + shift, sums[1], sums[1], sums[2] + shift], axis=1).reshape(-1, 2, 2)
+
+    def _real_solver(self, hessian: bsr_array[Any]) -> Callable[[Floats], Floats]:
+        """Solves with the Hessian itself."""
+        order, place = (
+            (2 * k[:, None] + np.arange(2)).ravel() for k in (self.elimination.order, self.elimination.place)
+        )
+        factors = factorised(hessian.tocsr()[order][:, order].tocsc())
+        return lambda r: np.asarray(factors.solve(r[order])[place])
 
     def _hermitian_solver(self, terms: Terms) -> Callable[[Floats], Floats]:
-        """Solves with the complex linear part of the Hessian, on vectors (2V,) in elimination order."""
-        ends = np.concatenate([self.tail, self.head])
-        blocks = np.concatenate([terms.tail_tail, terms.head_head])
-        traces = (blocks[:, 0, 0] + blocks[:, 1, 1]) / 2
-        diagonal = np.bincount(ends, weights=traces, minlength=self.count) + self._shift(blocks)
-        matrix = self.elimination.matrix(self.tail, self.head, _complex_part(terms.tail_head), diagonal)
-        factors = factorised(matrix)
-        return lambda r: np.ascontiguousarray(factors.solve(r.view(np.complex128))).view(np.float64)
+        """Solves with the complex linear part of the Hessian."""
+        order, place = self.elimination.order, self.elimination.place
+        diagonal = np.trace(self._diagonal(terms), axis1=1, axis2=2) / 2
+        factors = factorised(self.elimination.matrix(self.tail, self.head, _complex_part(terms.tail_head), diagonal))
+        return lambda r: np.asarray(factors.solve(r.view(np.complex128)[order])[place]).view(np.float64)
 
 
 def _complex_part(blocks: Floats) -> NDArray[np.complex128]:
