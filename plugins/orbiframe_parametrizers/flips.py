@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
-_FLIPS_PER_SLOT = 4
+_FLIPS_PER_SLOT = 40
 
 
 class Flippable:
