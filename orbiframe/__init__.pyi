@@ -41,6 +41,7 @@ from orbiframe.macro import (
     PowellSabinSplit as PowellSabinSplit,
     Unknowns as Unknowns,
     VertexJets as VertexJets,
+    edge_normals as edge_normals,
     enclosing_triangles as enclosing_triangles,
     shaped_triangles as shaped_triangles,
 )

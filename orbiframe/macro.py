@@ -7,18 +7,23 @@ frames, and are carried from triangle to triangle by substitution.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csr_array
+from scipy.sparse import csr_array
 
 from orbiframe.bernstein import coefficient_count, symmetric_power
 from orbiframe.geodesic_triangulation import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+_AT_ONCE = 256  # triangles whose dense forms are in memory together: few enough for the cache
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,16 +78,42 @@ class Unknowns:
         columns = [first + count * owner[..., None] + np.arange(count) for first, count, owner in parts]
         return np.concatenate([column.reshape(d.face_count, -1) for column in columns], axis=1)
 
-    def matrix(self, nets: Floats, faces: slice = slice(None)) -> csr_array:
-        """C from Bernstein coefficients as forms of the unknowns of their triangle: nets (F, m, n, local_size).
+    def matrix(self, nets: Floats) -> csr_array:
+        """C from Bernstein coefficients as forms of the unknowns of their triangle: nets (F, m, n, local_size)."""
+        return self.assembled(lambda faces: nets[faces], (nets != 0).any(axis=0))
 
-        Terms of one unknown that occurs several times in a triangle are added. faces: the triangles that nets holds.
+    def assembled(self, nets: Callable[[slice], Floats], pattern: Bools) -> csr_array:
+        """C from nets that are made for some triangles at a time, so that few of the dense forms exist at once.
+
+        nets: the Bernstein coefficients on a range of triangles as forms of their unknowns, (N, m, n, local_size);
+        pattern: (m, n, local_size), which of them may differ from zero. Terms of one unknown that occurs several times
+        in a triangle are added.
         """
-        row, local = np.nonzero(nets.reshape(-1, self.local_size))
-        rows_per_face = nets.shape[1] * nets.shape[2]
-        column = self.numbers[faces][row // rows_per_face, local]
-        shape = (len(nets) * rows_per_face, self.size)
-        return coo_array((nets.reshape(-1, self.local_size)[row, local], (row, column)), shape=shape).tocsr()
+        faces, rows = self.domain.face_count, pattern.reshape(-1, self.local_size)
+        order = np.argsort(self.numbers, axis=1, kind="stable")
+        index = np.int32 if faces * max(int(rows.sum()), self.size) < 2**31 else np.int64
+        data = np.empty((faces, int(rows.sum())))
+        column = np.empty(data.shape, dtype=index)
+        for begin in range(0, faces, _AT_ONCE):
+            part = slice(begin, min(begin + _AT_ONCE, faces))
+            forms = nets(part).reshape(-1, *rows.shape)
+            _fill_rows(forms, rows, order[part], self.numbers[part], data[part], column[part])
+        start = np.concatenate([[0], np.cumsum(np.tile(rows.sum(axis=1), faces))]).astype(index)
+        matrix = csr_array((data.ravel(), column.ravel(), start), shape=(len(start) - 1, self.size))
+        matrix.sum_duplicates()
+        return matrix
+
+
+@njit(cache=True)
+def _fill_rows(forms, pattern, order, numbers, data, column):  # type: ignore[no-untyped-def]
+    """The entries of the pattern row by row, each row in the order of the numbers of its unknowns."""
+    for f in range(len(forms)):
+        k = 0
+        for row in range(len(pattern)):
+            for local in order[f]:
+                if pattern[row, local]:
+                    data[f, k], column[f, k] = forms[f, row, local], numbers[f, local]
+                    k += 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,6 +146,14 @@ class VertexJets:
         of degree `order` = k. The blossom of P at vectors w_i is read off where its exponent stands.
         """
         return symmetric_power(self._to_reference[:, corner] @ vectors, self.order if order is None else order)
+
+    def own_forms(self, faces: slice) -> Floats:
+        """The coefficients of P of every corner on the triangle itself, (N, 3, n, n).
+
+        [triangle, corner, coefficient, unknown]; for corner c the triangle is taken from there on: c, c + 1, c + 2.
+        """
+        rotated = self.domain.corners[faces][:, (np.arange(3)[:, None] + np.arange(3)) % 3]
+        return symmetric_power(self._to_reference[faces] @ np.swapaxes(rotated, 2, 3), self.order)
 
 
 def tangent_points(domain: GeodesicTriangulation, corner: int, vectors: Floats) -> Floats:
@@ -188,6 +227,19 @@ def _on_tangent_planes(domain: GeodesicTriangulation, plane: Floats) -> Floats:
     reference = domain.corners.reshape(-1, 3)[domain.vertex_corner]
     lifted = np.concatenate([np.ones((len(plane), 1, 3)), plane], axis=1)
     return np.asarray(domain.geometry.carry(reference) @ lifted)
+
+
+def edge_normals(domain: GeodesicTriangulation) -> Floats:
+    """Tangent vectors across the edges, as long as the edge, (F, 3, 3): on the plane of no edge, the same all along it.
+
+    n = J w |e| / sqrt(w J w) with w = v_c x v_(c + 1) and J = diag(K, 1, 1), in the frame of each triangle. The gluing
+    takes those of the twin to n or, where both look inwards, to -n.
+    """
+    x = domain.corners
+    across = np.cross(x, np.roll(x, -1, axis=1))
+    normal = across * np.array([domain.geometry.curvature, 1.0, 1.0])
+    length = np.sqrt((across * normal).sum(axis=-1))
+    return np.asarray(normal * (domain.edge_lengths.reshape(-1, 3) / length)[..., None])
 
 
 @dataclass(frozen=True, eq=False)

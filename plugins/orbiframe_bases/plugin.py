@@ -27,4 +27,19 @@ def orbiframe_components() -> list[Component]:
             "orbiframe_bases.powell_sabin:PowellSabin2",
             "C1 quadratic Powell-Sabin splines, not negative, three control points a vertex",
         ),
+        Component(
+            "basis",
+            "ps3",
+            "orbiframe_bases.powell_sabin:PowellSabin3",
+            "C1 cubic Powell-Sabin splines, C2 across the edges of the triangulation",
+        ),
+        Component("basis", "ps4", "orbiframe_bases.powell_sabin:PowellSabin4", "C1 quartic Powell-Sabin splines"),
+        Component("basis", "ps5", "orbiframe_bases.powell_sabin:PowellSabin5", "C2 quintic Powell-Sabin splines"),
+        Component("basis", "ps6", "orbiframe_bases.powell_sabin:PowellSabin6", "C2 Powell-Sabin splines of degree 6"),
+        Component(
+            "basis",
+            "tensor-bspline",
+            "orbiframe_bases.tensor_bspline:TensorBSpline",
+            "products of periodic B-splines of any degree and knots on a torus or Klein bottle",
+        ),
     ]

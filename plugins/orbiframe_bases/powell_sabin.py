@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from orbiframe import (
     ElementBasis,
@@ -13,60 +16,113 @@ from orbiframe import (
     Triangulation,
     Unknowns,
     VertexJets,
+    coefficient_count,
     domain_for,
+    edge_normals,
     enclosing_triangles,
+    shaped_triangles,
 )
+from orbiframe_bases.powell_sabin_nets import Pieces, powell_sabin_nets
 
 Floats = NDArray[np.float64]
 
+_ROTATED = (np.arange(3)[:, None] + np.arange(3)) % 3
 
-class PowellSabin2(ElementBasis):
-    """C1 quadratic splines with three control points a vertex, not negative, with sum 1 (paper, 3.3).
 
-    The Powell-Sabin split of a triangulation of X/H through the incentres. The functions of a vertex are the splines
-    whose jet there is one Bernstein polynomial on a triangle on the tangent plane that holds the split points of its
-    star, so they are not negative; in all three geometries the constant 1 has all coefficients 1 (Maes and Bultheel,
-    2007, for S^2).
+class PowellSabin(ElementBasis):
+    """Splines of one degree on the Powell-Sabin split of a triangulation of X/H through the incentres (paper, 3.3).
+
+    The unknowns are jets of one order at the vertices, as Bernstein coefficients on a triangle on the tangent plane,
+    and for some degrees one on every edge or one in every triangle.
 
     triangulation: the map of a mesh, on which a domain for about `size` functions is made, or a domain itself.
     """
 
+    polynomial_degree: ClassVar[int]
+    jet_order: ClassVar[int]
+    continuity: ClassVar[int]
+    on_edge: ClassVar[int] = 0
+    in_face: ClassVar[int] = 0
+
     def __init__(
         self, orbifold: Orbifold, triangulation: Triangulation | GeodesicTriangulation, *, size: int = 1000
     ) -> None:
-        domain = domain_for(orbifold, triangulation, size, (3, 0, 0))
+        at_vertex = coefficient_count(self.jet_order)
+        domain = domain_for(orbifold, triangulation, size, (at_vertex, self.on_edge, self.in_face))
         split = PowellSabinSplit(domain)
-        jets = VertexJets(domain, 1, enclosing_triangles(domain, split.around))
-        unknowns = Unknowns(domain, 3, 0, 0)
-        super().__init__(domain, 2, split.cells, unknowns.matrix(_nets(split, jets, unknowns)), 1)
+        jets = VertexJets(domain, self.jet_order, self._triangles(split))
+        unknowns = Unknowns(domain, at_vertex, self.on_edge, self.in_face)
+        matrix = _matrix(self.polynomial_degree, split, jets, unknowns)
+        super().__init__(domain, self.polynomial_degree, split.cells, matrix, self.continuity)
+
+    def _triangles(self, split: PowellSabinSplit) -> Floats:
+        """The triangles about the vertices on which the jets are given."""
+        return shaped_triangles(split.domain, split.around, 1.4)
 
 
-def _nets(split: PowellSabinSplit, jets: VertexJets, unknowns: Unknowns) -> Floats:
-    """The Bernstein coefficients as forms of the nine unknowns of a triangle, (F, 6, 6, 9).
+def _matrix(degree: int, split: PowellSabinSplit, jets: VertexJets, unknowns: Unknowns) -> csr_array:
+    centre, share = split.coordinates(split.incentre)[:, _ROTATED], split.share
+    normals = _normal_coordinates(split.domain)
 
-    B(v, u) is the jet of the corner; at R it is linear between the two ends of its edge, at Z between three corners.
+    def nets(faces: slice) -> Floats:
+        pieces = Pieces(jets.own_forms(faces), centre[faces], share[faces], normals[faces])
+        return powell_sabin_nets(degree, jets.order, pieces, unknowns.local_size)
+
+    return unknowns.assembled(nets, _pattern(degree, jets.order, unknowns.local_size))
+
+
+def _normal_coordinates(domain: GeodesicTriangulation) -> Floats:
+    inverse = np.linalg.inv(np.swapaxes(domain.corners, 1, 2))
+    normals = edge_normals(domain) @ np.swapaxes(inverse, 1, 2)
+    return np.asarray(np.take_along_axis(normals, np.broadcast_to(_ROTATED, normals.shape), axis=2))
+
+
+def _pattern(degree: int, order: int, unknowns: int) -> NDArray[np.bool_]:
+    """Which forms may differ from zero: those that do on a triangle without any symmetry."""
+    some = np.random.default_rng(0).uniform(0.5, 1.5, size=400)
+    count = coefficient_count(order)
+    pieces = Pieces(
+        some[: 3 * count * count].reshape(1, 3, count, count),
+        some[300:309].reshape(1, 3, 3),
+        some[310:316].reshape(1, 3, 2),
+        some[320:329].reshape(1, 3, 3),
+    )
+    return np.asarray((powell_sabin_nets(degree, order, pieces, unknowns) != 0)[0])
+
+
+class PowellSabin2(PowellSabin):
+    """C1 quadratic splines with three control points a vertex, not negative, with sum 1 (paper, 3.3).
+
+    The functions of a vertex are the splines whose jet there is one Bernstein polynomial on a triangle on the tangent
+    plane that holds the split points of its star, so they are not negative; in all three geometries the constant 1 has
+    all coefficients 1 (Maes and Bultheel, 2007, for S^2).
     """
-    domain = split.domain
-    faces, z = domain.face_count, split.coordinates(split.incentre)
 
-    def at_corner(corner: int, vectors: Floats) -> Floats:
-        """B(v_corner, u) for u in the columns of (F, 3, 3), as forms: (F, 3, 9)."""
-        form = np.zeros((faces, 3, unknowns.local_size))
-        form[:, :, unknowns.vertex_slots(corner)] = jets.forms(corner, vectors)
-        return form
+    polynomial_degree, jet_order, continuity = 2, 1, 1
 
-    corner_z = np.zeros((faces, 3, unknowns.local_size))
-    nets = np.empty((faces, 6, 6, unknowns.local_size))
-    for cell in range(6):
-        edge, corner = cell // 2, (cell // 2 + cell % 2) % 3
-        at = at_corner(corner, np.swapaxes(split.cells[:, cell], 1, 2))
-        corner_z[:, corner] = at[:, 2]
-        nets[:, cell, 0], nets[:, cell, 1], nets[:, cell, 2] = at[:, 0], at[:, 1], at[:, 2]
-    at_centre = np.einsum("fc,fcu->fu", z, corner_z)
-    for edge in range(3):
-        mu, nu = split.share[:, edge, 0, None], split.share[:, edge, 1, None]
-        for cell in (2 * edge, 2 * edge + 1):
-            nets[:, cell, 3] = mu * nets[:, 2 * edge, 1] + nu * nets[:, 2 * edge + 1, 1]
-            nets[:, cell, 4] = mu * corner_z[:, edge] + nu * corner_z[:, (edge + 1) % 3]
-            nets[:, cell, 5] = at_centre
-    return nets
+    def _triangles(self, split: PowellSabinSplit) -> Floats:
+        return enclosing_triangles(split.domain, split.around)
+
+
+class PowellSabin3(PowellSabin):
+    """C1 cubic splines with six functions a vertex, C2 at the vertices and across the edges of the triangulation."""
+
+    polynomial_degree, jet_order, continuity = 3, 2, 1
+
+
+class PowellSabin4(PowellSabin):
+    """C1 quartic splines with six functions a vertex and one a triangle, C2 inside of the triangles."""
+
+    polynomial_degree, jet_order, continuity, in_face = 4, 2, 1, 1
+
+
+class PowellSabin5(PowellSabin):
+    """C2 quintic splines with ten functions a vertex and one a triangle, C3 at the vertices."""
+
+    polynomial_degree, jet_order, continuity, in_face = 5, 3, 2, 1
+
+
+class PowellSabin6(PowellSabin):
+    """C2 splines of degree 6 with ten functions a vertex and one an edge, C3 at the vertices; constants are exact."""
+
+    polynomial_degree, jet_order, continuity, on_edge = 6, 3, 2, 1
