@@ -34,9 +34,11 @@ from orbiframe.errors import (
     UsageError as UsageError,
 )
 from orbiframe.fitter import Fitter as Fitter
+from orbiframe.flat_lattice import FlatLattice as FlatLattice
 from orbiframe.geodesic_triangulation import GeodesicTriangulation as GeodesicTriangulation
 from orbiframe.geometry import Geometry as Geometry
 from orbiframe.group import Group as Group
+from orbiframe.location import Locator as Locator
 from orbiframe.macro import (
     PowellSabinSplit as PowellSabinSplit,
     Unknowns as Unknowns,
@@ -56,6 +58,7 @@ from orbiframe.polygon_group import PolygonGroup as PolygonGroup
 from orbiframe.polyhedron import Polyhedron as Polyhedron
 from orbiframe.presentation import Presentation as Presentation
 from orbiframe.quadrature import triangle_points as triangle_points, triangle_rule as triangle_rule
+from orbiframe.quotient import divide_jets as divide_jets
 from orbiframe.registry import Registry as Registry
 from orbiframe.samples import Samples as Samples
 from orbiframe.spacing import (
@@ -68,7 +71,6 @@ from orbiframe.spacing import (
     farthest_points as farthest_points,
 )
 from orbiframe.spin import Spin as Spin
-from orbiframe.spline_domain import spline_domain as spline_domain
 from orbiframe.surface import OrbifoldSurface as OrbifoldSurface
 from orbiframe.surface_file import load_surface as load_surface, save_surface as save_surface
 from orbiframe.topology import (
