@@ -16,7 +16,7 @@ Ints = NDArray[np.intp]
 
 
 class Tables(NamedTuple):
-    """Of the degrees d, d - 1, d - 2 and d - 3 (none of negative ones): multinomials, numbers of exponents one degree up.
+    """Of the degrees d, d - 1, d - 2 and d - 3 (none of negative ones): multinomials, exponents one degree up.
 
     multinomials: (4, n); raised: (n, 3), the number of a + e_i, the same in every degree; counts: (4,), how many
     exponents each degree has, 0 for a negative one.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from orbiframe.errors import FitError
 from orbiframe.geodesic_triangulation import GeodesicTriangulation
 from orbiframe.orbifold import Orbifold
+from orbiframe.spline_domain import spline_domain
 from orbiframe.triangulation import Triangulation
 
 
@@ -27,8 +28,3 @@ def domain_for(
     per_vertex = at_vertex + 3 * on_edge + 2 * in_face
     fixed = orbifold.euler_characteristic * (3 * on_edge + 2 * in_face)
     return spline_domain(triangulation, max(round((size + fixed) / per_vertex), 1))
-
-
-def spline_domain(triangulation: Triangulation, vertices: int) -> GeodesicTriangulation:
-    del vertices
-    return GeodesicTriangulation.of_map(triangulation)

@@ -85,7 +85,7 @@ class ElementBasis(DifferentiableBasis):
 
     def values(self, points: Points, coefficients: Floats) -> Floats:
         """See `Basis`; evaluated from the Bernstein coefficients, without a design matrix."""
-        return self.jets(points, coefficients, 0)[0]
+        return np.asarray(self.jets(points, coefficients, 0)[0])
 
     def jets(self, points: Points, coefficients: Floats, order: int) -> Floats:
         """See `DifferentiableBasis`; evaluated from the Bernstein coefficients, without a design matrix."""

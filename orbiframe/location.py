@@ -26,7 +26,7 @@ _ON_EDGE = 1e-12
 
 
 class Location(NamedTuple):
-    """Where points lie, in an order in which neighbours stand together, so that loops find their triangles in the cache.
+    """Where points lie, in an order in which neighbours stand together, so that their triangles stay in the cache.
 
     order: (n,), the numbers of the points; face: (n,), the triangle of point order[k]; columns: (n, 3, 1), the point in
     the frame of the triangle, or (n, 3, 3), the point and its `geometry.frame`.

@@ -26,6 +26,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=200")
     add("--group", metavar="NAME", help="a named group, such as regular-polygon; else that of the mesh (group.method)")
     add("--map", metavar="NAME", help="the map to X/H, such as equivariant (map.method)")
+    add("--basis", metavar="NAME", help="the functions, such as ps6 or gaussian (basis.name)")
     add("--shape", metavar="NAME", help="makes faces regular in X/H, such as regular-faces (shape.method)")
     size = parser.add_mutually_exclusive_group().add_argument
     size("--size", metavar="N", type=int, help="number of basis functions (basis.size)")
@@ -75,6 +76,7 @@ def overrides(args: argparse.Namespace) -> list[str]:
     named = {
         "group.method": args.group,
         "map.method": args.map,
+        "basis.name": args.basis,
         "shape.method": args.shape,
         "basis.size": args.size,
         "output.tolerance": args.tolerance,
