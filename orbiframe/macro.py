@@ -90,6 +90,7 @@ class Unknowns:
         in a triangle are added.
         """
         faces, rows = self.domain.face_count, pattern.reshape(-1, self.local_size)
+        kinds, kind = np.unique(rows, axis=0, return_inverse=True)
         order = np.argsort(self.numbers, axis=1, kind="stable")
         index = np.int32 if faces * max(int(rows.sum()), self.size) < 2**31 else np.int64
         data = np.empty((faces, int(rows.sum())))
@@ -97,7 +98,7 @@ class Unknowns:
         for begin in range(0, faces, _AT_ONCE):
             part = slice(begin, min(begin + _AT_ONCE, faces))
             forms = nets(part).reshape(-1, *rows.shape)
-            _fill_rows(forms, rows, order[part], self.numbers[part], data[part], column[part])
+            _fill_rows(forms, kinds, kind, order[part], self.numbers[part], data[part], column[part])
         start = np.concatenate([[0], np.cumsum(np.tile(rows.sum(axis=1), faces))]).astype(index)
         matrix = csr_array((data.ravel(), column.ravel(), start), shape=(len(start) - 1, self.size))
         matrix.sum_duplicates()
@@ -105,15 +106,25 @@ class Unknowns:
 
 
 @njit(cache=True)
-def _fill_rows(forms, pattern, order, numbers, data, column):  # type: ignore[no-untyped-def]
-    """The entries of the pattern row by row, each row in the order of the numbers of its unknowns."""
+def _fill_rows(forms, kinds, kind, order, numbers, data, column):  # type: ignore[no-untyped-def]
+    """The entries row by row, each row in the order of the numbers of its unknowns.
+
+    kinds: the patterns that rows can have; kind: the one of each row.
+    """
+    places, count = np.empty(kinds.shape, dtype=np.intp), np.zeros(len(kinds), dtype=np.intp)
     for f in range(len(forms)):
-        k = 0
-        for row in range(len(pattern)):
+        for n in range(len(kinds)):
+            count[n] = 0
             for local in order[f]:
-                if pattern[row, local]:
-                    data[f, k], column[f, k] = forms[f, row, local], numbers[f, local]
-                    k += 1
+                places[n, count[n]] = local
+                count[n] += kinds[n, local]
+        k = 0
+        for row in range(len(kind)):
+            n = kind[row]
+            for i in range(count[n]):
+                local = places[n, i]
+                data[f, k], column[f, k] = forms[f, row, local], numbers[f, local]
+                k += 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,14 +168,14 @@ class VertexJets:
 
 
 def tangent_points(domain: GeodesicTriangulation, corner: int, vectors: Floats) -> Floats:
-    """Vectors seen from the vertex of a corner: in its frame at the origin, on the plane x0 = 1, (F, ..., 2).
+    """Vectors seen from the vertex of a corner: in its frame at the origin, on the plane x0 = 1, (F, m, 2).
 
-    vectors: (F, ..., 3), in the frames of the triangles of the domain.
+    vectors: (F, m, 3), in the frames of the triangles of the domain.
     """
     geometry, reference = domain.geometry, domain.corners.reshape(-1, 3)[domain.vertex_corner]
     to_vertex = geometry.inverse(geometry.carry(reference))[domain.vertex[:, corner]]
     move = to_vertex @ geometry.inverse(domain.corner_frame[:, corner])
-    seen = np.einsum("fij,f...j->f...i", move, vectors)
+    seen = vectors @ np.swapaxes(move, 1, 2)
     return np.asarray(seen[..., 1:] / seen[..., :1])
 
 
@@ -188,16 +199,16 @@ def enclosing_triangles(domain: GeodesicTriangulation, around: Floats, turns: in
     moment, seen = _moments(domain, around)
     root = _roots(moment)
     vertex = np.repeat(domain.vertex.ravel(), around.shape[2])
-    flat = np.einsum("nij,nj->ni", np.linalg.inv(root)[vertex], seen.reshape(-1, 2))
+    order = np.argsort(vertex, kind="stable")
+    flat = np.einsum("nij,nj->in", np.linalg.inv(root)[vertex[order]], seen.reshape(-1, 2)[order])
+    first = np.searchsorted(vertex[order], np.arange(domain.vertex_count))
     size, angle = np.full(domain.vertex_count, np.inf), np.zeros(domain.vertex_count)
     for turn in np.arange(turns) * (2 * np.pi / 3 / turns):
-        sides = -2 * _regular(turn)
-        needed = np.full(domain.vertex_count, 1e-12)
-        np.maximum.at(needed, vertex, (flat @ sides).max(axis=1))
+        beyond = [np.maximum.reduceat(side @ flat, first) for side in -2 * _regular(turn).T]
+        needed = np.maximum.reduce(beyond)
         better = needed < size - 1e-12
         size[better], angle[better] = needed[better], turn
-    corners = np.moveaxis(_regular(angle), -1, 0) if np.ndim(angle) else _regular(angle)
-    return _on_tangent_planes(domain, size[:, None, None] * root @ corners)
+    return _on_tangent_planes(domain, size[:, None, None] * root @ np.moveaxis(_regular(angle), -1, 0))
 
 
 def _moments(domain: GeodesicTriangulation, around: Floats) -> tuple[Floats, Floats]:
@@ -217,8 +228,8 @@ def _roots(moment: Floats) -> Floats:
 
 
 def _regular(turn: Floats | float) -> Floats:
-    """The corners of the regular triangle of circumradius 1, in columns: (2, 3, ...)."""
-    angles = 2 * np.pi / 3 * np.arange(3)[(...,) + (None,) * np.ndim(turn)] + np.asarray(turn)
+    """The corners of regular triangles of circumradius 1, in columns: (2, 3, ...)."""
+    angles = np.add.outer(2 * np.pi / 3 * np.arange(3), turn)
     return np.stack([np.cos(angles), np.sin(angles)])
 
 

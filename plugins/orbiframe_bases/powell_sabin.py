@@ -62,7 +62,7 @@ class PowellSabin(ElementBasis):
 
 def _matrix(degree: int, split: PowellSabinSplit, jets: VertexJets, unknowns: Unknowns) -> csr_array:
     centre, share = split.coordinates(split.incentre)[:, _ROTATED], split.share
-    normals = _normal_coordinates(split.domain)
+    normals = _normal_coordinates(split.domain) if unknowns.on_edge else np.empty_like(centre)
 
     def nets(faces: slice) -> Floats:
         pieces = Pieces(jets.own_forms(faces), centre[faces], share[faces], normals[faces])
