@@ -33,6 +33,11 @@ from orbiframe.errors import (
     TopologyError as TopologyError,
     UsageError as UsageError,
 )
+from orbiframe.exact_patches import (
+    QuadrilateralPatches as QuadrilateralPatches,
+    TrianglePatches as TrianglePatches,
+    triangle_patches as triangle_patches,
+)
 from orbiframe.fitter import Fitter as Fitter
 from orbiframe.flat_lattice import FlatLattice as FlatLattice
 from orbiframe.geodesic_triangulation import GeodesicTriangulation as GeodesicTriangulation
@@ -61,6 +66,7 @@ from orbiframe.quadrature import triangle_points as triangle_points, triangle_ru
 from orbiframe.quotient import divide_jets as divide_jets
 from orbiframe.registry import Registry as Registry
 from orbiframe.samples import Samples as Samples
+from orbiframe.shared_edges import along_reference as along_reference, shared_normals as shared_normals
 from orbiframe.spacing import (
     Graph as Graph,
     Spacing as Spacing,

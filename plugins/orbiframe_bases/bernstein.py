@@ -6,7 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from orbiframe import ElementBasis, GeodesicTriangulation, Orbifold, Triangulation, UsageError, domain_for, exponents
+from orbiframe import (
+    ElementBasis,
+    GeodesicTriangulation,
+    Orbifold,
+    Triangulation,
+    UsageError,
+    along_reference,
+    domain_for,
+    exponents,
+)
 
 Ints = NDArray[np.intp]
 
@@ -48,7 +57,7 @@ def shared_numbers(domain: GeodesicTriangulation, degree: int) -> tuple[Ints, in
     inside = np.flatnonzero((a > 0).all(axis=1))
     base = domain.vertex_count + (degree - 1) * domain.edge_count
     number[:, inside] = base + np.arange(domain.face_count * len(inside)).reshape(domain.face_count, -1)
-    edge, along = domain.edge.reshape(-1, 3), runs_along_reference(domain).reshape(-1, 3)
+    edge, along = domain.edge.reshape(-1, 3), along_reference(domain).reshape(-1, 3)
     for c in range(3):
         after, opposite = (c + 1) % 3, (c + 2) % 3
         number[:, np.flatnonzero(a[:, c] == degree)[0]] = domain.vertex[:, c]
@@ -56,8 +65,3 @@ def shared_numbers(domain: GeodesicTriangulation, degree: int) -> tuple[Ints, in
             place = np.where(along[:, c], a[k, after], a[k, c]) - 1
             number[:, k] = domain.vertex_count + (degree - 1) * edge[:, c] + place
     return number, base + domain.face_count * len(inside)
-
-
-def runs_along_reference(domain: GeodesicTriangulation) -> NDArray[np.bool_]:
-    """Each halfedge starts where the reference halfedge of its edge does, (3 F,)."""
-    return domain.reference | domain.same
