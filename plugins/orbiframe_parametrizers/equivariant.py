@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from annotated_types import Ge
@@ -21,7 +21,7 @@ from orbiframe import (
     Triangulation,
     surface_type,
 )
-from orbiframe_parametrizers.developing import in_patches
+from orbiframe_parametrizers.developing import in_patches, on_both_halfedges
 from orbiframe_parametrizers.edge_weights import WEIGHTS
 from orbiframe_parametrizers.embedding import embedded
 from orbiframe_parametrizers.even_areas import evened
@@ -48,8 +48,8 @@ def equivariant(
     The frames of neighbours in this map give patches near the origin, in which the map is harmonic once more, with all
     digits. polyhedron: a closed connected triangle mesh with chi <= 0, coherently oriented if orientable; geometry: of
     the group; group: a marking of this mesh and a group with its word. weights, even_areas: as for the map `harmonic`.
-    Raises MapError if no group is named, if the marking is of another mesh, if the surface does not live on the geometry, or
-    if no map without a fold and with all relations is found.
+    Raises MapError if no group is named, if the marking is of another mesh, if the surface does not live on the
+    geometry, or if no map without a fold and with all relations is found.
     """
     surface = surface_type(polyhedron)
     _require(polyhedron, geometry, group, surface)
@@ -91,9 +91,9 @@ def _require(mesh: Polyhedron, geometry: Geometry, group: MarkedGroup | None, su
 
 def _layout(mesh: Polyhedron, geometry: Geometry, group: MarkedGroup, surface: SurfaceType) -> Triangulation:
     """The map in patches, near its minimum."""
-    lift = _corner_lifts(mesh, group)
-    points = _unfolded(mesh, geometry, lift, surface)
-    steps = _steps(mesh, geometry, lift, points)
+    lifts = _CornerLifts.of(mesh, group)
+    points = _unfolded(mesh, geometry, lifts, surface)
+    steps = _steps(mesh, geometry, lifts, points)
     lengths = geometry.distance(geometry.origin, steps[..., 0])
     if geometry.curvature == 0:
         lengths *= np.sqrt(4 * np.pi / group.group.area)
@@ -101,26 +101,45 @@ def _layout(mesh: Polyhedron, geometry: Geometry, group: MarkedGroup, surface: S
     return replace(layout, group=group.source)
 
 
-def _corner_lifts(mesh: Polyhedron, group: MarkedGroup) -> Spin:
-    """For every corner (H,) the deck transformation from the lift of its vertex to the corner of the lifted face.
+class _CornerLifts(NamedTuple):
+    """For every corner the deck transformation from the lift of its vertex to the corner of the lifted face.
 
     Faces are lifted into the cell. The lift of a vertex is that in one of its corners, at position p; at position c the
-    vertex is seen by g_c g_p^-1, the identity where p and c are the same.
+    vertex is seen by g_c g_p^-1, the identity where p and c are the same. element: the distinct ones, of which the
+    first is the identity; number: (H,), that of every corner.
     """
-    position = group.marking.position
-    _, first = np.unique(mesh.tail, return_index=True)
-    own = position[first][mesh.tail]
-    pairs, which = np.unique(np.stack([position, own], axis=1), axis=0, return_inverse=True)
-    element = group.elements
-    lifts = element[pairs[:, 0]] @ element[pairs[:, 1]].inverse
-    still = pairs[:, 0] == pairs[:, 1]
-    lifts = Spin(lifts.curvature, np.where(still, 1, lifts.a), np.where(still, 0, lifts.b), lifts.reverses & ~still)
-    return lifts[which.ravel()]
+
+    element: Spin
+    number: Ints
+
+    @classmethod
+    def of(cls, mesh: Polyhedron, group: MarkedGroup) -> _CornerLifts:
+        """The lifts for a marking of the mesh and a group with its word."""
+        position, size = group.marking.position, len(group.group.word)
+        own = np.empty(len(mesh.vertices), dtype=np.intp)
+        own[mesh.tail[::-1]] = position[::-1]
+        # Equal positions have the key 0, which stands for the identity.
+        moved = position != own[mesh.tail]
+        key = np.where(moved, position * size + own[mesh.tail], 0)
+        keys, number = np.unique(np.append(key, 0), return_inverse=True)
+        corner, vertex = np.divmod(keys, size)
+        return cls(group.elements[corner] @ group.elements[vertex].inverse, number[:-1])
+
+    def isometries(self, mesh: Polyhedron) -> tuple[Floats, Ints]:
+        """The isometries (n, 3, 3) along edges, the identity first, and which of them every halfedge (H,) has."""
+        count = len(self.element.a)
+        after = self.number[mesh.next]
+        key = np.where(self.number == after, 0, self.number * count + after)
+        keys, number = np.unique(np.append(key, 0), return_inverse=True)
+        tail, head = np.divmod(keys, count)
+        isometry = (self.element[tail].inverse @ self.element[head]).matrix
+        isometry[0] = np.eye(3)
+        return isometry, number[:-1]
 
 
-def _unfolded(mesh: Polyhedron, geometry: Geometry, lift: Spin, surface: SurfaceType) -> Floats:
+def _unfolded(mesh: Polyhedron, geometry: Geometry, lifts: _CornerLifts, surface: SurfaceType) -> Floats:
     """The points (V, 3) of the harmonic map with positive weights, in the frame of the cell, to some digits."""
-    isometry = (lift.inverse @ lift[mesh.next]).matrix
+    isometry, transition = lifts.isometries(mesh)
     ends = np.zeros(len(isometry), dtype=np.intp)
     atlas = Atlas(geometry, np.array([np.inf]), ends, ends, ends, isometry)
     orbifold = Orbifold(atlas, surface.euler_characteristic, surface.orientable, 1.0)
@@ -129,17 +148,15 @@ def _unfolded(mesh: Polyhedron, geometry: Geometry, lift: Spin, surface: Surface
     if not (np.isfinite(weights).all() and (weights > 0).all()):
         weights = WEIGHTS["uniform"](mesh)
     patch = np.zeros(len(mesh.vertices), dtype=np.intp)
-    return unfolded(Triangulation(orbifold, mesh, patch, start, np.arange(len(mesh.tail))), weights)
+    return unfolded(Triangulation(orbifold, mesh, patch, start, transition), weights)
 
 
-def _steps(mesh: Polyhedron, geometry: Geometry, lift: Spin, points: Floats) -> Floats:
+def _steps(mesh: Polyhedron, geometry: Geometry, lifts: _CornerLifts, points: Floats) -> Floats:
     """For every halfedge from i to j the isometry from the frame at j to the frame at i, (H, 3, 3).
 
     The frame at a vertex is carried from the origin to its point along a geodesic; no step is longer than its edge.
     """
-    frame = lift @ Spin.translation(geometry.curvature, points)[mesh.tail]
-    steps = (frame.inverse @ frame[mesh.next]).matrix
-    other = np.flatnonzero(~mesh.representative)
-    twin, same = mesh.twin[other], mesh.same[other, None, None]
-    steps[other] = np.where(same, steps[twin], geometry.inverse(steps[twin]))
-    return steps
+    at_vertex = Spin.translation(geometry.curvature, points)
+    edges = np.flatnonzero(mesh.representative)
+    here, there = (lifts.element[lifts.number[h]] @ at_vertex[mesh.tail[h]] for h in (edges, mesh.next[edges]))
+    return on_both_halfedges(mesh, geometry, edges, (here.inverse @ there).matrix)

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import io
 import json
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -140,11 +141,25 @@ def test_progress_is_shown_on_a_terminal_only():
         assert (file.getvalue(), terminal.text) == ("", [])
 
 
+DATASETS = Path(__file__).parents[2] / "datasets"
+
 REPORT = {
     "surface": {"name": "closed, orientable, genus 2, 1 component", "euler_characteristic": -2},
+    "triangles": {"diagonals": 50, "faces_cut": 50, "rule": "the shortest"},
     "geometry": "h2",
     "group": {"source": "mesh", "patches": 1, "relation_defect": 2.5e-15},
-    "map": {"triangles": 400, "not_positive": 0, "angle_distortion": {"median": 1.1, "p95": 1.5, "max": float("inf")}},
+    "map": {
+        "triangles": 400,
+        "not_positive": 0,
+        "crowding": {"area_ratio": 0.1, "digits_lost": 1.0},
+        "angle_distortion": {"median": 1.1, "p95": 1.5, "max": float("inf")},
+    },
+    "faces": {
+        "corners": 4,
+        "angle": {"median": 3.21, "max": 9.0},
+        "adjacent": {"median": 1.25, "max": 2.0},
+        "before": {"angle": {"median": 30.0, "max": 40.0}, "adjacent": {"median": 4.5, "max": 7.0}},
+    },
     "fit": {"basis": "gaussian", "size": 100, "samples": 900, "rms": 1e-3, "max": 5e-3},
     "output": {"vertices": 800, "faces": 1600},
     "seconds": {"map": 1.5, "fit": 0.25},
@@ -159,12 +174,40 @@ def test_the_summary_says_what_came_out():
         "1 patch,",
         "2.5e-15",
         "median 1.10",
+        "50 diagonals",
+        "off by 3.2° (max 9.0°), sides 1 : 1.25 (max 2.00) (before: angles off by 30.0°",
         "100 functions",
         "1.00e-03",
         "800 vertices",
         "1.8 (",
     ):
         assert words in text
+
+
+def test_triangles_have_no_line_of_faces():
+    triangles = {**REPORT, "faces": {**REPORT["faces"], "corners": 3}}
+    assert "\nfaces" in summary(REPORT)
+    assert "\nfaces" not in summary(triangles)
+
+
+def test_shapes_are_improved_and_reported_before_and_after(orbiframe, tmp_path):
+    """A grid on a Klein bottle becomes squares."""
+    out = tmp_path / "out.ply"
+    ran = orbiframe("fit", DATASETS / "klein_bottle.off", "-o", out, "--size", 50, "--shape", "regular-faces", "--json")
+    report = json.loads(ran.out)
+    faces = report["faces"]
+    assert report["map"]["not_positive"] == 0
+    assert report["map"]["weights"] == "shape"
+    assert faces["count"] == faces["before"]["count"] == 288
+    assert faces["adjacent"]["max"] < 1 + 1e-9 < 3 < faces["before"]["adjacent"]["max"]
+    assert faces["angle"]["max"] < 1e-9 < 20 < faces["before"]["angle"]["max"]
+    assert "shape" in report["seconds"]
+
+
+def test_an_unknown_optimizer_is_refused(orbiframe, tmp_path):
+    ran = orbiframe("fit", DATASETS / "cube.off", "-o", tmp_path / "out.ply", "--shape", "regular-face")
+    assert ran.status == 2
+    assert "Did you mean 'regular-faces'" in ran.err
 
 
 def test_a_report_is_written_whole_or_not_at_all(tmp_path):
