@@ -11,7 +11,16 @@ import reference_surfaces as surfaces
 from orbiframe_geometries.e2 import E2
 from orbiframe_geometries.h2 import H2
 
-from orbiframe import ElementBasis, GeodesicTriangulation, Orbifold, PolygonGroup, polar, regular_polygon
+from orbiframe import (
+    ElementBasis,
+    GeodesicTriangulation,
+    Orbifold,
+    Points,
+    PolygonGroup,
+    polar,
+    regular_polygon,
+    triangle_rule,
+)
 from orbiframe.word import Word
 
 # Where edges are looked at, as shares of their length; and a step across them, as a share of the triangle.
@@ -58,18 +67,21 @@ def glued(orbifold: Orbifold, corners: np.ndarray, group: np.ndarray) -> Geodesi
     )
 
 
-def polygon(word: str, *, fan: bool = True) -> GeodesicTriangulation:
+def polygon(word: str, *, fan: bool = True, halves: bool = False) -> GeodesicTriangulation:
     """A regular polygon glued by a word, cut into triangles from its centre, or from its first corner.
 
-    Cut from a corner, a word with one vertex gives a triangulation with one vertex.
+    Cut from a corner, a word with one vertex gives a triangulation with one vertex. halves: cut to the midpoints of the
+    sides too.
     """
     letters = Word.parse(word)
     geometry = E2() if letters.euler_characteristic == 0 else H2()
     sides = regular_polygon(geometry, letters)
     orbifold = Orbifold(PolygonGroup(sides).atlas(), letters.euler_characteristic, letters.orientable, sides.area)
     v = sides.vertices
+    if halves:
+        v = np.stack([v, geometry.project(v + sides.heads)], axis=1).reshape(-1, 3)
     if fan:
-        corners = np.stack([np.broadcast_to(geometry.origin, v.shape), v, sides.heads], axis=1)
+        corners = np.stack([np.broadcast_to(geometry.origin, v.shape), v, np.roll(v, -1, axis=0)], axis=1)
     else:
         corners = np.array([[v[0], v[k], v[k + 1]] for k in range(1, len(v) - 1)])
     return glued(orbifold, corners, np.concatenate([np.eye(3)[None], sides.pairings]))
@@ -106,6 +118,21 @@ def domain(name: str) -> GeodesicTriangulation:
 def domains() -> dict[str, GeodesicTriangulation]:
     """Small domains on S^2, P^2, torus, Klein bottle, genus 2 and three crosscaps; two have one vertex."""
     return {name: domain(name) for name in MAKERS}
+
+
+def quadrature(basis: ElementBasis, count: int) -> tuple[Points, np.ndarray]:
+    """Points of X/H and weights that integrate smooth functions on micro triangles, with count^2 points on each.
+
+    In the flat triangle p = sum lambda_i v_i, and dA = |det(v1, v2, v3)| / rho(p)^3 dlambda1 dlambda2.
+    """
+    curvature = basis.domain.geometry.curvature
+    barycentric, weights = triangle_rule(count)
+    flat = barycentric @ basis.cells
+    rho = np.sqrt((flat**2 * [1, curvature, curvature]).sum(axis=-1))
+    area = np.abs(np.linalg.det(basis.cells))[..., None] * weights / 2 / rho**3
+    face = np.broadcast_to(np.arange(len(flat))[:, None, None], rho.shape).ravel()
+    x = np.einsum("nij,nj->ni", basis.domain.placement[face], (flat / rho[..., None]).reshape(-1, 3))
+    return Points(basis.domain.patch[face], x), area.ravel()
 
 
 def random_coefficients(basis: ElementBasis, seed: int = 0) -> np.ndarray:

@@ -36,6 +36,9 @@ class PowellSabin(ElementBasis):
     and for some degrees one on every edge or one in every triangle.
 
     triangulation: the map of a mesh, on which a domain for about `size` functions is made, or a domain itself.
+
+    vertex_triangles: (V, 3, 3), the triangles about the vertices, corners in columns, in the frames of the reference
+    corners of the vertices.
     """
 
     polynomial_degree: ClassVar[int]
@@ -50,7 +53,8 @@ class PowellSabin(ElementBasis):
         at_vertex = coefficient_count(self.jet_order)
         domain = domain_for(orbifold, triangulation, size, (at_vertex, self.on_edge, self.in_face))
         split = PowellSabinSplit(domain)
-        jets = VertexJets(domain, self.jet_order, self._triangles(split))
+        self.vertex_triangles = self._triangles(split)
+        jets = VertexJets(domain, self.jet_order, self.vertex_triangles)
         unknowns = Unknowns(domain, at_vertex, self.on_edge, self.in_face)
         matrix = _matrix(self.polynomial_degree, split, jets, unknowns)
         super().__init__(domain, self.polynomial_degree, split.cells, matrix, self.continuity)
@@ -102,6 +106,14 @@ class PowellSabin2(PowellSabin):
 
     def _triangles(self, split: PowellSabinSplit) -> Floats:
         return enclosing_triangles(split.domain, split.around)
+
+    def control_triangles(self, coefficients: Floats) -> Floats:
+        """The three control points of every vertex, (V, 3, q), from the coefficients of q functions, (size, q).
+
+        A surface touches the plane of the control points of a vertex there: its point is their convex combination with
+        the coordinates of the vertex in `vertex_triangles` as weights.
+        """
+        return coefficients.reshape(self.domain.vertex_count, 3, -1)
 
 
 class PowellSabin3(PowellSabin):
