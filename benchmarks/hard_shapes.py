@@ -96,9 +96,10 @@ def mapped(mesh: Polyhedron) -> Triangulation:
 
 def row(mesh: Polyhedron, plain: bool) -> str:
     """What the map of a mesh is like, or why there is none."""
-    start = time.perf_counter()
     try:
-        found = mapped(mesh if plain else refined(mesh))
+        fine = mesh if plain else refined(mesh)
+        start = time.perf_counter()
+        found = mapped(fine)
     except OrbiframeError as error:
         return f"{len(mesh.vertices)} | refused: {error} | | | | | | "
     seconds = time.perf_counter() - start

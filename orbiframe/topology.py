@@ -20,6 +20,10 @@ Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
 _SPLIT = "--split-nonmanifold-vertices"
+_SHARED_ENDS = (
+    "; if several edges are meant to join the same two vertices, faces as lists of vertices cannot tell them apart: put "
+    "a vertex on each of these edges, or give their twins to orbiframe.Polyhedron"
+)
 _SINGULAR = {"vertices": "vertex", "faces": "face", "edges": "edge", "junctions": "junction", "seams": "a seam"}
 
 
@@ -111,7 +115,8 @@ def require_closed_surface(polyhedron: Polyhedron) -> SurfaceType:
     fatal = [defect for defect in defects(polyhedron) if defect.fatal]
     if fatal:
         reasons = "; ".join(f"{defect} ({defect.where})" for defect in fatal)
-        raise TopologyError(f"the mesh is not one closed connected surface: {reasons}; {_advice(fatal)}")
+        advice = _advice(fatal) + (_SHARED_ENDS if _may_share_ends(polyhedron) else "")
+        raise TopologyError(f"the mesh is not one closed connected surface: {reasons}; {advice}")
     return surface_type(polyhedron)
 
 
@@ -263,8 +268,17 @@ def faces_with_repeated_vertices(polyhedron: Polyhedron) -> Ints:
 
 def _repeated_vertices(polyhedron: Polyhedron) -> Defect | None:
     bad = faces_with_repeated_vertices(polyhedron)
-    where = f"faces {_listed(bad)}"
-    return Defect("faces with a repeated vertex", len(bad), where, True, "--drop-degenerate") if len(bad) else None
+    if not len(bad):
+        return None
+    fatal = not _has_twins_of_its_own(polyhedron)
+    remedy = "--drop-degenerate" if fatal else ""
+    return Defect("faces with a repeated vertex", len(bad), f"faces {_listed(bad)}", fatal, remedy)
+
+
+def _has_twins_of_its_own(polyhedron: Polyhedron) -> bool:
+    """Whether all halfedges have twins, and such as the ends of the edges do not tell: then a face may meet itself."""
+    by_ends = Polyhedron.from_corners(polyhedron.vertices, polyhedron.offsets, polyhedron.tail)
+    return bool((polyhedron.twin >= 0).all()) and not np.array_equal(by_ends.twin, polyhedron.twin)
 
 
 def duplicate_faces(polyhedron: Polyhedron) -> list[tuple[int, int]]:
@@ -317,6 +331,15 @@ def _broken_edges(polyhedron: Polyhedron, joints: Seams) -> list[Defect]:
         more = "; …" if len(crowded) > len(shown) else ""
         found.append(Defect("non-manifold edges", len(crowded), where + more, True, _SPLIT))
     return found
+
+
+def _may_share_ends(polyhedron: Polyhedron) -> bool:
+    """Whether all edges that join more than two faces join an even number, or a face meets a vertex twice."""
+    alone = np.flatnonzero(polyhedron.twin < 0)
+    ends = np.sort(np.stack([polyhedron.tail[alone], polyhedron.head[alone]]), axis=0)
+    _, count = np.unique(ends, axis=1, return_counts=True)
+    crowded = count[count > 2]
+    return bool((crowded % 2 == 0).all() if len(crowded) else len(faces_with_repeated_vertices(polyhedron)))
 
 
 def _weld(found: Seams) -> str:
