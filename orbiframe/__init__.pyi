@@ -75,6 +75,7 @@ from orbiframe.spacing import (
     dijkstra_forest as dijkstra_forest,
     edge_graph as edge_graph,
     farthest_points as farthest_points,
+    joining_edges as joining_edges,
 )
 from orbiframe.spin import Spin as Spin
 from orbiframe.surface import OrbifoldSurface as OrbifoldSurface

@@ -8,10 +8,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
-from scipy.sparse.csgraph import breadth_first_order, connected_components
+from scipy.sparse.csgraph import breadth_first_order
 
 from orbiframe.errors import TopologyError
 from orbiframe.polyhedron import Polyhedron
+from orbiframe.spacing import joining_edges
 from orbiframe.word import Word, inverse_letters
 
 Ints = NDArray[np.intp]
@@ -104,8 +105,7 @@ def _require_trees(polyhedron: Polyhedron, tree: Bools, cotree: Bools) -> None:
     faces = polyhedron.face, polyhedron.face[polyhedron.twin], polyhedron.face_count
     for name, marked, nodes, (a, b, size) in (("tree", tree, vertices, ends), ("cotree", cotree, faces[2], faces)):
         chosen = np.flatnonzero(marked & polyhedron.representative)
-        graph = coo_array((np.ones(len(chosen)), (a[chosen], b[chosen])), shape=(size, size)).tocsr()
-        parts = connected_components(graph, directed=False)[0] - (size - nodes)
+        parts = nodes - int(joining_edges(size, a[chosen], b[chosen]).sum())
         if parts != 1 or len(chosen) != nodes - 1 or (marked[polyhedron.twin] != marked).any():
             raise TopologyError(
                 f"the {name} of a marking has {len(chosen)} edges in {parts} parts; it needs {nodes - 1} in one"
@@ -116,14 +116,26 @@ def _require_trees(polyhedron: Polyhedron, tree: Bools, cotree: Bools) -> None:
 
 def _turned_faces(polyhedron: Polyhedron, cotree: Bools) -> Bools:
     """The faces (F,) to be turned over so that faces on both sides of every cotree edge are oriented alike."""
-    count = polyhedron.face_count
-    glued = np.flatnonzero(cotree)
-    a, b = polyhedron.face[glued], polyhedron.face[polyhedron.twin[glued]]
-    shift = np.where(polyhedron.same[glued], count, 0)
-    rows, columns = np.concatenate([a, a + count]), np.concatenate([b + shift, b + count - shift])
-    sheets = coo_array((np.ones(len(rows)), (rows, columns)), shape=(2 * count, 2 * count)).tocsr()
-    label = connected_components(sheets, directed=False)[1]
-    return np.asarray(label[:count] != label[0])
+    return np.asarray(
+        _turned(polyhedron.offsets, polyhedron.face, polyhedron.twin, polyhedron.same, cotree, polyhedron.face_count)
+    )
+
+
+@njit(cache=True)
+def _turned(offsets, face, twin, same, crossed, count):  # type: ignore[no-untyped-def]
+    """From face 0 through the tree: of two faces that run the same way along their edge one is turned over."""
+    turned, reached = np.zeros(count, dtype=np.bool_), np.zeros(count, dtype=np.bool_)
+    reached[0] = True
+    waiting = [0]
+    while waiting:
+        here = waiting.pop()
+        for halfedge in range(offsets[here], offsets[here + 1]):
+            there = face[twin[halfedge]]
+            if crossed[halfedge] and not reached[there]:
+                reached[there] = True
+                turned[there] = turned[here] != same[halfedge]
+                waiting.append(there)
+    return turned
 
 
 def _boundary(polyhedron: Polyhedron, turned: Bools, cotree: Bools, is_side: Bools) -> tuple[Ints, Ints]:

@@ -103,6 +103,14 @@ def dijkstra_forest(graph: Graph, sources: ArrayLike) -> Forest:
     return Forest(*_forest(graph.start, graph.neighbour, graph.length, np.asarray(sources, dtype=np.intp)))
 
 
+def joining_edges(count: int, tail: Ints, head: Ints) -> Bools:
+    """Which of the edges (E,) join parts of `count` vertices that the edges before them leave apart.
+
+    They make a spanning forest; where the edges are sorted by length, the shortest one (Kruskal 1956).
+    """
+    return np.asarray(_joining(count, tail, head))
+
+
 def curve_order(x: Floats) -> Ints:
     """Points of X in one frame, (n, 3), sorted along a space-filling curve, so that neighbours in the list are near.
 
@@ -169,6 +177,24 @@ def _covering(start, neighbour, length, radius):  # type: ignore[no-untyped-def]
                     distance[j] = far
                     heapq.heappush(queue, (far, j))
     return np.array(chosen)
+
+
+@njit(cache=True)
+def _joining(count, tail, head):  # type: ignore[no-untyped-def]
+    above = np.arange(count)
+    joins = np.zeros(len(tail), dtype=np.bool_)
+    for edge in range(len(tail)):
+        i, j = tail[edge], head[edge]
+        while above[i] != i:
+            above[i] = above[above[i]]
+            i = above[i]
+        while above[j] != j:
+            above[j] = above[above[j]]
+            j = above[j]
+        if i != j:
+            above[max(i, j)] = min(i, j)
+            joins[edge] = True
+    return joins
 
 
 @njit(cache=True)

@@ -7,10 +7,17 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from annotated_types import Ge
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import minimum_spanning_tree
 
-from orbiframe import Graph, Marking, Polyhedron, dijkstra_forest, edge_graph, farthest_points, marking_along
+from orbiframe import (
+    Graph,
+    Marking,
+    Polyhedron,
+    dijkstra_forest,
+    edge_graph,
+    farthest_points,
+    joining_edges,
+    marking_along,
+)
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -64,16 +71,7 @@ def _both(polyhedron: Polyhedron, halfedges: Ints) -> Bools:
 
 
 def _spanning(polyhedron: Polyhedron, edges: Ints, weight: Floats) -> Ints:
-    """Those of the edges, given by a halfedge each, that make the maximum spanning tree of the faces.
-
-    Of several edges between two faces only the heaviest counts, and none between a face and itself.
-    """
+    """Those of the edges, given by a halfedge each, that make the maximum spanning tree of the faces."""
     edges = edges[np.argsort(-weight[edges], kind="stable")]
-    a, b = polyhedron.face[edges], polyhedron.face[polyhedron.twin[edges]]
-    low, high = np.minimum(a, b), np.maximum(a, b)
-    first = np.unique(low * np.intp(polyhedron.face_count) + high, return_index=True)[1]
-    first = first[low[first] != high[first]]
-    # The rank of an edge stands for its weight, so that the least rank is the heaviest and no entry is zero.
-    shape = (polyhedron.face_count, polyhedron.face_count)
-    graph = coo_array((1.0 + first, (low[first], high[first])), shape=shape).tocsr()
-    return edges[minimum_spanning_tree(graph).data.astype(np.intp) - 1]
+    ends = polyhedron.face[edges], polyhedron.face[polyhedron.twin[edges]]
+    return edges[joining_edges(polyhedron.face_count, *ends)]

@@ -119,10 +119,14 @@ def edge_isometries(mesh: Polyhedron, geometry: Geometry, lengths: Floats, angle
     edges = np.flatnonzero(mesh.representative)
     mirror = np.where(sense[edges] != sense[mesh.next[edges]], -1.0, 1.0)
     along = _edge_products(geometry, outgoing[edges], lengths[edges], mirror, incoming[edges])
-    twin = mesh.twin[edges]
+    return on_both_halfedges(mesh, geometry, edges, along)
+
+
+def on_both_halfedges(mesh: Polyhedron, geometry: Geometry, edges: Ints, along: Floats) -> Floats:
+    """Isometries (H, 3, 3) from those along one halfedge of every edge; a twin that runs the other way has the inverse."""
     steps = np.empty((len(mesh.tail), 3, 3))
+    steps[mesh.twin[edges]] = np.where(mesh.same[edges, None, None], along, geometry.inverse(along))
     steps[edges] = along
-    steps[twin] = np.where(mesh.same[edges, None, None], along, geometry.inverse(along))
     return steps
 
 

@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 _DIGITS = 1e-5
-PATIENCE = 25
+_PATIENCE = 25
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +125,7 @@ class Successive:
         """
         if self._near is not None:
             matrix = _symmetric(*edges, entries, diagonal)
-            answer, found = by_conjugate_gradients(matrix, right, self._near, tolerance=_DIGITS, steps=PATIENCE)
+            answer, found = by_conjugate_gradients(matrix, right, self._near, tolerance=_DIGITS, steps=_PATIENCE)
             if found:
                 return answer
         self._near = Elimination.of(mesh).solver(*edges, entries, diagonal)

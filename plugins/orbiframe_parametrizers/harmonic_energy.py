@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 from scipy.sparse import bsr_array
 
 from orbiframe import Geometry, MapError, Triangulation
-from orbiframe_parametrizers.elimination import PATIENCE, Elimination, by_conjugate_gradients, factorised
+from orbiframe_parametrizers.elimination import Elimination, by_conjugate_gradients, factorised
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 _STEPS = 40
-_LIMIT = 100
+_PATIENCE, _LIMIT = 12, 100
+_SHORT = 0.3
 _DECREMENT = 1e-10
 _SMALLEST_STEP = 1e-6
 
@@ -96,6 +97,7 @@ class HarmonicEnergy:
         self._columns = columns[self._by_row]
         self._starts = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=self.count))])
         self._near: Callable[[Floats], Floats] | None = None
+        self._moved = 0.0
         # Frames that all have one orientation make the Hessian nearly complex linear: see newton_step.
         self.complex = bool(orbifold.orientable and (self.geometry.parity(orbifold.atlas.isometry) > 0).all())
 
@@ -145,17 +147,18 @@ class HarmonicEnergy:
 
         The real system of size 2V is solved by conjugate gradients. The preconditioner is the complex linear part of
         the Hessian, one Hermitian system of size V, four times cheaper to factor than the real one; without a
-        complex structure (nonorientable) the real matrix itself is factored. Factors serve the next steps too, as long
-        as few iterations suffice.
+        complex structure (nonorientable) the real matrix itself is factored. After a short step
+        the factors serve the next one too, if few iterations suffice.
         """
         terms = self.terms(points)
         right, hessian = -self.gradient(terms).ravel(), self.hessian(terms)
         found = False
-        if self._near is not None:
-            answer, found = by_conjugate_gradients(hessian, right, self._near, tolerance=tolerance, steps=PATIENCE)
+        if self._near is not None and self._moved < _SHORT:
+            answer, found = by_conjugate_gradients(hessian, right, self._near, tolerance=tolerance, steps=_PATIENCE)
         if not found:
             self._near = self._hermitian_solver(terms) if self.complex else self._real_solver(hessian)
             answer, _ = by_conjugate_gradients(hessian, right, self._near, tolerance=tolerance, steps=_LIMIT)
+        self._moved = float(np.abs(answer).max())
         return answer.reshape(-1, 2), float(right @ answer)
 
     def gradient(self, terms: Terms) -> Floats:

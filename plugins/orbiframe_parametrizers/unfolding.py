@@ -12,14 +12,14 @@ Floats = NDArray[np.float64]
 
 _STEPS = 60
 _DECREMENT = 1e-6
-_TOLERANCE = 1e-3
+_TOLERANCE = 1e-2
 _HALVINGS = 20
 
 
 def unfolded(start: Triangulation, weights: Floats) -> Floats:
     """Points (V, 3) near the minimum of sum w d^2 / 2 over the edges, for positive weights (H,), by Newton's method.
 
-    The steps are solved to three digits. Stops where the decrement is 1e-6 of the energy, or where rounding lets no
+    The steps are solved to two digits. Stops where the decrement is 1e-6 of the energy, or where rounding lets no
     step lower the energy further: far from the origin points have an error of eps e^d and more, so a map that needs
     all digits has to move to patches.
     """

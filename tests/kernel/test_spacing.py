@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.sparse import csr_array
-from scipy.sparse.csgraph import dijkstra
+from scipy.sparse.csgraph import connected_components, dijkstra, minimum_spanning_tree
 
 from orbiframe.polyhedron import Polyhedron
-from orbiframe.spacing import Graph, covering_points, dijkstra_forest, edge_graph, farthest_points
+from orbiframe.spacing import Graph, covering_points, dijkstra_forest, edge_graph, farthest_points, joining_edges
 
 
 def bumpy_torus(n: int, m: int) -> Polyhedron:
@@ -114,3 +114,17 @@ def test_every_vertex_once_and_no_more(graph: Graph) -> None:
 def test_coincident_vertices_are_chosen_once() -> None:
     flat = Polyhedron.from_faces([[0, 0, 0], [1, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2, 3]])
     assert len(farthest_points(edge_graph(flat), 4).chosen) == 3
+
+
+@pytest.mark.parametrize("edges", [0, 30, 300])
+def test_joining_edges_of_a_sorted_list_are_the_shortest_forest(edges: int) -> None:
+    rng = np.random.default_rng(edges)
+    tail, head = rng.integers(60, size=(2, edges))
+    length = np.sort(rng.uniform(1, 2, edges))
+    joins = joining_edges(60, tail, head)
+    table = np.full((60, 60), np.inf)
+    np.minimum.at(table, (tail, head), length)
+    np.minimum.at(table, (head, tail), length)
+    table[np.isinf(table) | np.eye(60, dtype=bool)] = 0.0
+    assert length[joins].sum() == pytest.approx(minimum_spanning_tree(table).sum())
+    assert 60 - joins.sum() == connected_components(table, directed=False)[0]
