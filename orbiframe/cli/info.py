@@ -11,7 +11,7 @@ from typing import Any
 from orbiframe.cli.description import description, lines
 from orbiframe.cli.loops import add_loops, show_loops
 from orbiframe.cli.report import plain
-from orbiframe.cli.streams import read
+from orbiframe.cli.streams import choice, read
 from orbiframe.errors import OrbiframeError, UsageError
 from orbiframe.registry import Registry
 
@@ -40,7 +40,21 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
 
 
 def _described(path: Path, args: argparse.Namespace, registry: Registry) -> Described:
-    return description(read(path, registry, args.input_format, degenerate=True))
+    polyhedron = read(path, registry, args.input_format, degenerate=True)
+    found = description(polyhedron)
+    if _welds(path, args, registry):
+        corners, vertices = len(polyhedron.tail), len(polyhedron.vertices)
+        where = f"the {corners} corners in the file became {vertices} vertices"
+        found["notes"].append({"kind": "welded", "count": corners - vertices, "where": where})
+    return found
+
+
+def _welds(path: Path, args: argparse.Namespace, registry: Registry) -> bool:
+    """Whether the reader of a file joins equal corners of faces."""
+    from orbiframe.formats import component_name
+
+    name = choice("reader", args.input_format, registry).component
+    return registry.component("reader", component_name(path, registry, "reader", name)).welds
 
 
 def _outcomes(args: argparse.Namespace, registry: Registry) -> Iterator[tuple[Path, Described]]:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import FormatError, Polyhedron
+from orbiframe_meshio.texts import EndingText, require_counts, require_trustworthy
 
 Ints = NDArray[np.intp]
 
@@ -23,20 +24,32 @@ BELOW = {"vertex", "line"}
 DIALECTS = {".msh": "gmsh22"}
 # What this dialect asks of every cell.
 TAGS: dict[str | None, tuple[str, ...]] = {"gmsh22": ("gmsh:physical", "gmsh:geometrical")}
-XML = {".vtu", ".xml", ".svg", ".xdmf", ".xmf"}
-# Formats on HDF5, netCDF and references to it.
-CONTAINERS = {".xdmf", ".xmf", ".cgns", ".h5m", ".hmf", ".med", ".e", ".exo", ".ex2"}
-INCLUDE = re.compile(rb"^[ \t]*\*[ \t]*include", re.IGNORECASE | re.MULTILINE)
-ENTITY = re.compile(rb"<!(ENTITY|DOCTYPE)")
+# SU2 has surfaces in the plane only.
+PLANE = {".su2"}
+# meshio's names of the formats that are read line by line.
+LINE_READERS = {
+    **dict.fromkeys((".dat", ".tec"), "tecplot"),
+    ".avs": "avsucd",
+    **dict.fromkeys((".nas", ".bdf", ".fem"), "nastran"),
+    **dict.fromkeys((".post", ".dato"), "permas"),
+    ".vol": "netgen",
+}
+# Formats of which meshio reads what is counted, and no more.
+COUNTED = {"tecplot", "avsucd"}
+# Names of boundaries are not kept anyhow.
+HARMLESS = re.compile(r"Warning: meshio does not support tags of string type\. Surface tag .*? will be replaced by \d+")
 # Relative to the bounding box: formats that round coordinates to float32 pass, a lost digit more does not.
 ROUNDING = 1e-6
+LENGTH = 200
 
 
 def polyhedron_of(path: Path) -> Polyhedron:
     """The polygons of a file. Raises FormatError for cells that are no polygons, and where meshio warns or ends."""
-    _require_closed(path)
+    require_trustworthy(path)
     with _strict(path):
-        mesh = meshio.read(path)
+        mesh = _mesh(path)
+    if path.suffix.lower() in PLANE:
+        require_counts(path, sum(len(block.data) for block in mesh.cells))
     return _polyhedron(path, mesh)
 
 
@@ -45,9 +58,28 @@ def save(path: Path, polyhedron: Polyhedron) -> None:
     blocks = list(_blocks(polyhedron))
     dialect = DIALECTS.get(path.suffix.lower())
     tags = {name: [np.zeros(len(corners), dtype=np.int32) for _, corners in blocks] for name in TAGS.get(dialect, ())}
-    with _strict(path):
-        meshio.write(path, meshio.Mesh(polyhedron.vertices, blocks, cell_data=tags), file_format=dialect)
+    points = _plane_points(path, polyhedron) if path.suffix.lower() in PLANE else polyhedron.vertices
+    # The UGRID writer prints numbers as NumPy 1 did.
+    with _strict(path), np.printoptions(legacy="1.25"):
+        meshio.write(path, meshio.Mesh(points, blocks, cell_data=tags), file_format=dialect)
     _require_same(path, polyhedron, polyhedron_of(path))
+
+
+def _mesh(path: Path) -> Any:
+    name = LINE_READERS.get(path.suffix.lower())
+    if name is None:
+        return meshio.read(path)
+    with EndingText(path.open("rb"), encoding="utf-8", errors="replace") as text:
+        mesh = meshio.read(text, name)
+        if name in COUNTED and text.read().strip():
+            raise FormatError(f"{path}: the file goes on after what its counts say; only one zone is read")
+    return mesh
+
+
+def _plane_points(path: Path, polyhedron: Polyhedron) -> NDArray[np.float64]:
+    if polyhedron.vertices[:, 2].any():
+        raise FormatError(f"{path}: this format holds surfaces in the plane z = 0 only; choose OFF, OBJ, PLY or VTU")
+    return polyhedron.vertices[:, :2]
 
 
 def _polyhedron(path: Path, mesh: Any) -> Polyhedron:
@@ -57,13 +89,14 @@ def _polyhedron(path: Path, mesh: Any) -> Polyhedron:
         raise FormatError(
             f"{path}: found cells of the kind {', '.join(other)}; only triangles, quads and polygons are read"
         )
+    points = _points(path, mesh.points)
     blocks = [np.asarray(block.data) for block in mesh.cells if block.type in POLYGONS and len(block.data)]
     if not blocks:
         raise FormatError(f"{path}: the file holds no triangles, quads or polygons")
     sizes = np.concatenate([np.full(len(block), block.shape[1]) for block in blocks])
     tail = np.concatenate([block.ravel() for block in blocks]).astype(np.intp)
-    _require_range(path, tail, len(mesh.points))
-    return Polyhedron.from_corners(_points(path, mesh.points), np.concatenate([[0], np.cumsum(sizes)]), tail)
+    _require_range(path, tail, len(points))
+    return Polyhedron.from_corners(points, np.concatenate([[0], np.cumsum(sizes)]), tail)
 
 
 def _points(path: Path, points: NDArray[Any]) -> NDArray[np.float64]:
@@ -98,25 +131,6 @@ def _require_same(path: Path, written: Polyhedron, found: Polyhedron) -> None:
         raise FormatError(f"{path}: meshio cannot write this polyhedron without loss; choose OFF, OBJ, PLY or VTU")
 
 
-def _require_closed(path: Path) -> None:
-    """Raise FormatError for a file that may open others: by an entity, an include, or a link out of HDF5."""
-    suffix = path.suffix.lower()
-    if suffix in CONTAINERS:
-        raise FormatError(f"{path}: {suffix} files may name other files, so they are not read; save it as VTU or PLY")
-    content = path.read_bytes()
-    if suffix in XML:
-        _require_plain_xml(path, content)
-    if suffix == ".inp" and INCLUDE.search(content):
-        raise FormatError(f"{path}: the file includes another; only files that stand alone are read")
-
-
-def _require_plain_xml(path: Path, content: bytes) -> None:
-    if not content.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):
-        raise FormatError(f"{path}: the file does not start like XML in UTF-8; is it what its suffix says?")
-    if ENTITY.search(content):
-        raise FormatError(f"{path}: XML with a document type or entities is not read; take them out")
-
-
 @contextlib.contextmanager
 def _strict(path: Path) -> Iterator[None]:
     """What meshio prints is a complaint, and its end of the process an error: both become FormatError."""
@@ -124,8 +138,17 @@ def _strict(path: Path) -> Iterator[None]:
     try:
         with contextlib.redirect_stdout(words), contextlib.redirect_stderr(words):
             yield
+    except FormatError:
+        raise
     except (Exception, SystemExit) as error:
-        said = words.getvalue().strip() or f"{type(error).__name__}: {error}"
+        said = _brief(words.getvalue()) or f"{type(error).__name__}: {_brief(str(error))}"
         raise FormatError(f"{path}: meshio failed: {said}") from error
-    if words.getvalue().strip():
-        raise FormatError(f"{path}: meshio is not sure of this file: {words.getvalue().strip()}")
+    said = _brief(HARMLESS.sub("", " ".join(words.getvalue().split())))
+    if said:
+        raise FormatError(f"{path}: meshio is not sure of this file: {said}")
+
+
+def _brief(words: str) -> str:
+    """What meshio says on one line; it may quote much of a file."""
+    plain = " ".join("".join(letter if letter.isprintable() else " " for letter in words[: 20 * LENGTH]).split())
+    return plain if len(plain) <= LENGTH else f"{plain[:LENGTH]}…"

@@ -16,6 +16,14 @@ SUFFIXES = (
     ".avs",
     ".dat",
     ".tec",
+    ".nas",
+    ".bdf",
+    ".fem",
+    ".vol",
+    ".post",
+    ".dato",
+    ".su2",
+    ".ugrid",
 )
 
 

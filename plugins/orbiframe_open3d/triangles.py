@@ -17,7 +17,10 @@ def polyhedron_of(path: Path) -> Polyhedron:
     """The triangles of a file; what Open3D splits for normals and pictures is joined again where it coincides."""
     o3d = _open3d()
     _require_own_files(path)
-    mesh = o3d.t.io.read_triangle_mesh(str(path))
+    try:
+        mesh = o3d.t.io.read_triangle_mesh(str(path))
+    except (RuntimeError, IndexError, ValueError) as error:
+        raise FormatError(f"{path}: Open3D cannot read this file, though it may be of this format: {error}") from error
     if "positions" not in mesh.vertex or "indices" not in mesh.triangle or not len(mesh.triangle.indices):
         raise FormatError(f"{path}: Open3D finds no triangles; is the file what its suffix says?")
     points = mesh.vertex.positions.numpy()

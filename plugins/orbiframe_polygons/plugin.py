@@ -18,7 +18,9 @@ FORMATS = {
 def orbiframe_components() -> list[Component]:
     """A reader and a writer for each of these formats."""
     return [
-        Component(kind, name, f"orbiframe_polygons.{module}_{kind}:{verb}", summary, suffixes=suffixes)
+        Component(
+            kind, name, f"orbiframe_polygons.{module}_{kind}:{verb}", summary, suffixes=suffixes, welds=name == "stl"
+        )
         for name, (module, summary, suffixes) in FORMATS.items()
         for kind, verb in (("reader", "read"), ("writer", "write"))
     ]

@@ -80,6 +80,8 @@ class _Parser:
         self._line = 1
         self._order: str | None = None
         self._elements: list[Element] = []
+        self._names: set[str] = set()
+        self._properties: set[str] = set()
 
     def run(self, lines: list[bytes]) -> tuple[str, list[Element]]:
         for line in lines:
@@ -109,16 +111,19 @@ class _Parser:
                 self._refuse(f"found {shown(b' '.join(words))}, which is no statement of a PLY header")
 
     def _add_element(self, element: Element) -> None:
-        if any(known.name == element.name for known in self._elements):
+        if element.name in self._names:
             self._refuse(f"the element '{element.name}' is declared twice")
+        self._names.add(element.name)
         self._elements.append(element)
+        self._properties.clear()
 
     def _add_property(self, added: Property) -> None:
         if not self._elements:
             self._refuse("a property stands before the first element")
         element = self._elements[-1]
-        if any(known.name == added.name for known in element.properties):
+        if added.name in self._properties:
             self._refuse(f"the element '{element.name}' has the property '{added.name}' twice")
+        self._properties.add(added.name)
         element.properties.append(added)
 
     def _integer(self, kind: bytes) -> bool:

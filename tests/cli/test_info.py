@@ -181,3 +181,13 @@ def test_extreme_sizes_are_described(scale):
     assert found["edge_lengths"]["median"] == pytest.approx(scale * description(mesh)["edge_lengths"]["median"])
     assert found["defects"] == []
     json.dumps(plain(found), allow_nan=False)
+
+
+def test_what_welding_did_is_noted(orbiframe, cube, tmp_path):
+    assert orbiframe("convert", cube, tmp_path / "cube.stl", "--triangulate").status == 0
+    note = "note: welded: the 36 corners in the file became 8 vertices"
+    assert note in orbiframe("info", tmp_path / "cube.stl").out.splitlines()
+    (tmp_path / "cube.stl").rename(tmp_path / "cube.txt")
+    assert note in orbiframe("info", tmp_path / "cube.txt", "-i", "stl").out.splitlines()
+    ran = orbiframe("info", tmp_path / "cube.txt", "-i", "stl", "--json")
+    assert json.loads(ran.out)["notes"][0]["count"] == 28

@@ -85,6 +85,13 @@ PLY_READABLE: list[tuple[str, str | bytes, Mesh | str]] = [
         header(end_header="element edge 2\nproperty int a\nproperty int b\nend_header") + BODY + "0 1\n1 2\n",
         GOOD,
     ),
+    (
+        "ten thousand properties",
+        header(property_float_z="property float z\n" + "\n".join(f"property uchar p{k}" for k in range(10_000)))
+        + POINT_LINES.replace("\n", " 0" * 10_000 + "\n")
+        + FACE_LINES,
+        GOOD,
+    ),
     ("an empty unknown element", header(end_header="element edge 0\nend_header") + BODY, GOOD),
 ]
 
@@ -106,6 +113,11 @@ PLY_DAMAGED: list[tuple[str, str | bytes, Mesh | str]] = [
     ("duplicate element", header(element_face="element vertex 4"), "line 8.*twice"),
     ("property before element", header(comment="property float w"), "line 3.*before"),
     ("element without property", header(comment="element nothing 1000000000000"), "nothing.*no property"),
+    (
+        "ten thousand elements",
+        header(element_vertex="\n".join(f"element e{k} 0" for k in range(10_000)) + "\nelement vertices 4") + BODY,
+        "no element 'vertex'",
+    ),
     ("missing coordinate", header(property_float_z="") + BODY, "line|lacks"),
     ("no y but u", header(property_float_y="property float u") + BODY, "lacks"),
     (
