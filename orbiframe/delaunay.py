@@ -7,20 +7,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from orbiframe.atlas import Atlas, Points
+from orbiframe.atlas import Points
 from orbiframe.cells import Cells, cells_of
 from orbiframe.errors import MapError
 from orbiframe.flips import legalise, push_all
+from orbiframe.frames import centred
 from orbiframe.geodesic_triangulation import GeodesicTriangulation
-from orbiframe.geometry import Geometry
 from orbiframe.insertion import insert
 from orbiframe.orbifold import Orbifold
 from orbiframe.removal import remove
 from orbiframe.walking import locate_in
 
-Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
-Bools = NDArray[np.bool_]
 
 _MOST_FLIPS_EACH = 10_000
 
@@ -51,7 +49,7 @@ def delaunay(triangulation: GeodesicTriangulation, sites: Points) -> SiteTriangu
     located = locate_in(cells, start, sites)
     vertex, count = insert(cells, start.face_count, start.vertex_count, located, start.orbifold.area)
     _require_distinct(vertex)
-    remove(cells, np.setdiff1d(np.arange(count), vertex))
+    remove(cells, _others(count, vertex))
     return _result(cells, triangulation.orbifold, vertex)
 
 
@@ -60,14 +58,21 @@ def delaunay_of_vertices(triangulation: GeodesicTriangulation, vertices: ArrayLi
 
     vertices: (n,), different numbers as in `triangulation.vertex`. Raises MapError as `delaunay` does.
     """
-    everything = np.arange(triangulation.vertex_count)
-    chosen = everything if vertices is None else np.asarray(vertices, dtype=np.intp)
+    count = triangulation.vertex_count
+    chosen = np.arange(count) if vertices is None else np.asarray(vertices, dtype=np.intp)
     if not len(chosen):
         raise MapError("no vertices are chosen; a triangulation of a closed surface has at least one vertex")
     _require_distinct(chosen)
     cells = _flipped(triangulation, 0)
-    remove(cells, np.setdiff1d(everything, chosen))
+    remove(cells, _others(count, chosen))
     return _result(cells, triangulation.orbifold, chosen)
+
+
+def _others(count: int, vertex: Ints) -> Ints:
+    """The numbers below `count` that are not among the given ones."""
+    absent = np.ones(count, dtype=np.bool_)
+    absent[vertex] = False
+    return np.flatnonzero(absent)
 
 
 def _require_distinct(vertex: Ints) -> None:
@@ -84,7 +89,7 @@ def _fine(triangulation: GeodesicTriangulation) -> GeodesicTriangulation:
         if triangulation.edge_lengths.max() <= _LONG:
             break
         t = triangulation.refined()
-        triangulation = _centred(t.orbifold, t.corners, t.twin, t.same, t.patch, t.placement)
+        triangulation = centred(t.orbifold, t.corners, t.twin, t.same, t.patch, t.placement)
     return triangulation
 
 
@@ -103,68 +108,23 @@ def _settle(cells: Cells, count: int) -> None:
         )
 
 
-# ---- from cells to a triangulation ----------------------------------------------------------------------------------
-
-
-def _result(cells: Cells, orbifold: Orbifold, vertex: Ints) -> SiteTriangulation:
-    """The triangles that are left, each in a frame at its centre, and the corners of sites."""
+def _result(cells: Cells, orbifold: Orbifold, sites: Ints) -> SiteTriangulation:
+    """The triangles that are left, and the numbers that the vertices of sites have among them."""
     _settle(cells, len(cells.corners))
     alive = np.flatnonzero(cells.twin[::3] >= 0)
     number = np.cumsum(cells.twin[::3] >= 0) - 1
     halfedge = (3 * alive[:, None] + np.arange(3)).ravel()
     twin = cells.twin[halfedge]
-    triangulation = _centred(
-        orbifold,
-        cells.corners[alive],
-        3 * number[twin // 3] + twin % 3,
-        cells.same[halfedge],
-        cells.patch[alive],
-        cells.placement[alive],
-    )
-    seat = cells.seat[vertex]
-    return SiteTriangulation(triangulation, triangulation.vertex.ravel()[3 * number[seat // 3] + seat % 3])
+    twin = 3 * number[twin // 3] + twin % 3
+    same, patch, placement = cells.same[halfedge], cells.patch[alive], cells.placement[alive]
+    triangulation = centred(orbifold, cells.corners[alive], twin, same, patch, placement)
+    return SiteTriangulation(triangulation, _by_first_corner(cells.vertex[halfedge], len(cells.seat))[sites])
 
 
-def _centred(
-    orbifold: Orbifold, corners: Floats, twin: Ints, same: Bools, patch: Ints, placement: Floats
-) -> GeodesicTriangulation:
-    """Every triangle in a frame at its centre, attached to a patch near it, with gluings from the edges alone."""
-    geometry = orbifold.geometry
-    centre = geometry.carry(geometry.project(corners.sum(axis=1)))
-    back = geometry.inverse(centre)
-    x = geometry.settle(geometry.act(back[:, None], corners))
-    patch, placement = _attached(orbifold.atlas, patch, geometry.nearest_isometry(placement @ centre))
-    gluing = edge_gluings(geometry, x, twin, same)
-    return GeodesicTriangulation(orbifold, x, twin, same, gluing, patch, placement)
-
-
-def edge_gluings(geometry: Geometry, corners: Floats, twin: Ints, same: Bools) -> Floats:
-    """The isometries from triangle to triangle across every edge, from its ends in both frames, (3 F, 3, 3)."""
-    start = corners.reshape(-1, 3)
-    end = np.roll(corners, -1, axis=1).reshape(-1, 3)
-    there = np.where(same[:, None], start[twin], end[twin]), np.where(same[:, None], end[twin], start[twin])
-    return geometry.isometry_between(there[0], there[1], start, end, np.where(same, -1.0, 1.0))
-
-
-def _attached(atlas: Atlas, patch: Ints, placement: Floats) -> tuple[Ints, Floats]:
-    """Frames attached to patches whose origins are near them: from patch to patch, while that brings them nearer."""
-    geometry, patch, placement = atlas.geometry, patch.copy(), placement.copy()
-    order = np.argsort(atlas.tail, kind="stable")
-    bound = np.searchsorted(atlas.tail[order], np.arange(atlas.patch_count + 1))
-    far = np.arange(len(patch))
-    while len(far):
-        distance = geometry.distance(geometry.origin, placement[far, :, 0])
-        far, distance = far[distance > atlas.radius[patch[far]]], distance[distance > atlas.radius[patch[far]]]
-        best, step = distance * (1 - 1e-9), np.full(len(far), -1)
-        for p in np.unique(patch[far]):
-            here = np.flatnonzero(patch[far] == p)
-            leaving = order[bound[p] : bound[p + 1]]
-            moved = geometry.act(atlas.isometry[atlas.inverse[leaving]], placement[far[here], None, :, 0])
-            reach = geometry.distance(geometry.origin, moved)
-            nearest = reach.argmin(axis=1)
-            least = reach[np.arange(len(here)), nearest]
-            step[here] = np.where(least < best[here], leaving[nearest], -1)
-        far, step = far[step >= 0], step[step >= 0]
-        patch[far] = atlas.head[step]
-        placement[far] = geometry.nearest_isometry(atlas.isometry[atlas.inverse[step]] @ placement[far])
-    return patch, placement
+def _by_first_corner(label: Ints, most: int) -> Ints:
+    """The number of every label (< most) in the order of their first corners, (most,); 0 for those that are absent."""
+    first = np.full(most, len(label))
+    first[label[::-1]] = np.arange(len(label) - 1, -1, -1)
+    is_first = np.zeros(len(label) + 1, dtype=np.intp)
+    is_first[first] = 1
+    return np.asarray((np.cumsum(is_first) - 1)[first] * (first < len(label)))

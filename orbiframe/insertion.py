@@ -6,9 +6,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from orbiframe.cells import Cells, corner, move, multiply, recentre, split
+from orbiframe.cells import Cells, bare, copy, corner, move, multiply, recentre, split
 from orbiframe.errors import MapError
-from orbiframe.flips import chord, legalise, push, versine
+from orbiframe.flips import chord, legalise_star, push, versine
 from orbiframe.walking import LONGEST_CHAIN, Located, by_place, walk
 
 Ints = NDArray[np.intp]
@@ -49,7 +49,7 @@ def _insert(cells, faces, vertices, order, home, x, near, vertex):  # type: igno
         if home[i] != last or chain >= LONGEST_CHAIN:
             last, chain = home[i], 0
             face = last
-            route[:] = cells.route[last]
+            copy(cells.route[last], route)
         chain += 1
         y[0], y[1], y[2] = move(k, route, x[i])
         face, seed = walk(cells, face, y, route, seed)
@@ -58,7 +58,7 @@ def _insert(cells, faces, vertices, order, home, x, near, vertex):  # type: igno
         if recentre(cells, face):
             y[0], y[1], y[2] = move(k, cells.work[7], y)
             multiply(cells.work[7], route, cells.work[4])
-            route[:] = cells.work[4]
+            copy(cells.work[4], route)
         site = (y[0], y[1], y[2])
         for slot in range(3 * face, 3 * face + 3):
             if versine(k, chord(k, corner(cells, slot), site)) < near:
@@ -69,13 +69,13 @@ def _insert(cells, faces, vertices, order, home, x, near, vertex):  # type: igno
         split(cells, face, site, vertices, faces, faces + 1)
         top = push(cells, push(cells, push(cells, 0, 3 * face), 3 * faces), 3 * faces + 3)
         faces, vertices = faces + 2, vertices + 1
-        legalise(cells, top, 100 * faces + 10_000)
+        legalise_star(cells, top)
         if not _holds(cells, face, site):
             chain = LONGEST_CHAIN
     return vertices, -1
 
 
-@njit(cache=True)
+@bare
 def _holds(cells, face, x):  # type: ignore[no-untyped-def]
     """Whether x is a corner of a triangle to the bit: its frame is then still the same."""
     return corner(cells, 3 * face) == x or corner(cells, 3 * face + 1) == x or corner(cells, 3 * face + 2) == x

@@ -6,9 +6,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from orbiframe.cells import Cells, after, before, corner, flip, merge, move, multiply
+from orbiframe.cells import Cells, after, bare, before, copy, corner, flip, merge, move, multiply
 from orbiframe.errors import MapError
-from orbiframe.flips import legalise, outside, push, turn
+from orbiframe.flips import legalise, outside, push, push_around, turn
 
 Ints = NDArray[np.intp]
 
@@ -40,10 +40,8 @@ def _remove(cells, order):  # type: ignore[no-untyped-def]
             e = _soonest(cells.curvature, corner(cells, cells.seat[vertex]), degree, ring)
             if e < 0:
                 return vertex
-            f, g = e // 3, cells.twin[e] // 3
             flip(cells, e)
-            for outer in (3 * f + 1, 3 * f + 2, 3 * g + 1, 3 * g + 2):
-                top = push(cells, top, outer)
+            top = push_around(cells, top, e)
         f = cells.seat[vertex] // 3
         merge(cells, cells.seat[vertex])
         for e in range(3 * f, 3 * f + 3):
@@ -74,14 +72,14 @@ def _link(cells, vertex, ring):  # type: ignore[no-untyped-def]
         degree += 1
         way = slot if mirrored else before(slot)
         multiply(route, cells.gluing[way], moved)
-        route[:] = moved
+        copy(moved, route)
         starts = mirrored != cells.same[way]
         slot = after(cells.twin[way]) if starts else cells.twin[way]
         mirrored = starts
     return degree, (edge, x, loop)
 
 
-@njit(cache=True)
+@bare
 def _soonest(curvature, v, degree, ring):  # type: ignore[no-untyped-def]
     """The edge at a vertex v that flips first if v, with all its lifts, is raised over the surface of the lifted sites.
 

@@ -9,7 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from orbiframe.atlas import Points
-from orbiframe.cells import Cells, cells_of, corner, move, multiply
+from orbiframe.cells import Cells, bare, cells_of, copy, corner, move, multiply
 from orbiframe.errors import GeometryError
 from orbiframe.flips import turn
 from orbiframe.geodesic_triangulation import GeodesicTriangulation
@@ -74,7 +74,7 @@ def _entrances(cells: Cells, triangulation: GeodesicTriangulation) -> tuple[Ints
     return face, route
 
 
-@njit(cache=True)
+@bare
 def walk(cells, face, x, route, seed):  # type: ignore[no-untyped-def]
     """Follow a point x from a triangle to the one that it lies in; x and route change with the frames.
 
@@ -100,7 +100,7 @@ def walk(cells, face, x, route, seed):  # type: ignore[no-untyped-def]
         step = cells.gluing[entered]
         x[0], x[1], x[2] = move(cells.curvature, step, x)
         multiply(step, route, moved)
-        route[:] = moved
+        copy(moved, route)
     return -1, seed
 
 
@@ -113,7 +113,7 @@ def _locate(cells, order, patch, x, first, first_route, found_face, found_x):  #
         if patch[i] != last or chain >= LONGEST_CHAIN:
             last, chain = patch[i], 0
             face = first[last]
-            route[:] = first_route[last]
+            copy(first_route[last], route)
         chain += 1
         y[0], y[1], y[2] = move(cells.curvature, route, x[i])
         face, seed = walk(cells, face, y, route, seed)
