@@ -21,8 +21,8 @@ Bools = NDArray[np.bool_]
 
 _SPLIT = "--split-nonmanifold-vertices"
 _SHARED_ENDS = (
-    "; if several edges are meant to join the same two vertices, faces as lists of vertices cannot tell them apart: put "
-    "a vertex on each of these edges, or give their twins to orbiframe.Polyhedron"
+    "; if several edges are meant to join the same two vertices, faces as lists of vertices cannot tell them apart: "
+    "put a vertex on each of these edges, or give their twins to orbiframe.Polyhedron"
 )
 _SINGULAR = {"vertices": "vertex", "faces": "face", "edges": "edge", "junctions": "junction", "seams": "a seam"}
 
