@@ -36,9 +36,9 @@ class EndingText(io.TextIOWrapper):
 
     _asked = 0
 
-    def readline(self, size: int = -1, /) -> str:
+    def readline(self, size: int | None = -1, /) -> str:
         """The next line. Raises EOFError where there is none, from the tenth time on."""
-        line = super().readline(size)
+        line = super().readline(-1 if size is None else size)
         self._asked = 0 if line else self._asked + 1
         if self._asked > 9:
             raise EOFError("the file ends too early; is it cut short?")

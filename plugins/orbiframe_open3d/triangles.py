@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from orbiframe import FormatError, PluginError, Polyhedron
+from orbiframe_open3d.links import require_own_files
 
 SYSTEM = "apt-get install libusb-1.0-0 libgl1 libegl1 libx11-6 libudev1"
 
 
 def polyhedron_of(path: Path) -> Polyhedron:
     """The triangles of a file; what Open3D splits for normals and pictures is joined again where it coincides."""
+    require_own_files(path)
     o3d = _open3d()
-    _require_own_files(path)
     try:
         mesh = o3d.t.io.read_triangle_mesh(str(path))
     except (RuntimeError, IndexError, ValueError) as error:
@@ -51,17 +51,3 @@ def _open3d() -> Any:
             f"open3d cannot be loaded ({error}); it needs system libraries: on Debian, {SYSTEM}"
         ) from error
     return open3d
-
-
-def _require_own_files(path: Path) -> None:
-    """A glTF text may name further files; only those in its own folder are allowed."""
-    if path.suffix.lower() != ".gltf":
-        return
-    try:
-        tree = json.loads(path.read_bytes())
-        names = [str(part["uri"]) for key in ("buffers", "images") for part in tree.get(key, []) if "uri" in part]
-    except (ValueError, TypeError, AttributeError, RecursionError) as error:
-        raise FormatError(f"{path}: this is no glTF: {error}") from error
-    for name in names:
-        if not name.startswith("data:") and (Path(name).name != name or ":" in name or "%" in name):
-            raise FormatError(f"{path}: the file names {name[:80]!r}; only files in its own folder are opened")

@@ -139,7 +139,8 @@ def _facet_lines(content: bytes) -> bytes:
 
 def _corners(path: Path, pieces: Iterator[tuple[bytes, bool]]) -> Floats:
     """The corners of all facets, (n, 3, 3), from pieces of text that say whether they are the last."""
-    corners, line, inside = [np.empty((0, 3, 3))], 1, 0
+    corners: list[Floats] = [np.empty((0, 3, 3))]
+    line, inside = 1, 0
     for piece, last in pieces:
         text = table(path, piece, line=line)
         keyword = _keywords(text)

@@ -2,11 +2,13 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import struct
 import subprocess
 import sys
 
 import numpy as np
 import pytest
+from orbiframe_open3d.links import require_own_files
 from orbiframe_open3d.plugin import SUFFIXES
 from orbiframe_open3d.reader import read
 from orbiframe_open3d.writer import write
@@ -71,3 +73,36 @@ def test_where_open3d_is_missing_the_error_says_what_to_install(tmp_path):
 def test_larger_faces_are_refused(tmp_path):
     with pytest.raises(FormatError, match=r"face 0 has 4 corners.*triangulate"):
         write(tmp_path / "a.glb", Polyhedron.from_faces(np.eye(4)[:, :3], [[0, 1, 2, 3]]))
+
+
+def glb(tree, *, version=2, size=None, length=None) -> bytes:
+    text = json.dumps(tree).encode()
+    text += b" " * (-len(text) % 4)
+    length = len(text) if length is None else length
+    return struct.pack("<4sIIII", b"glTF", version, 20 + len(text) if size is None else size, length, 0x4E4F534A) + text
+
+
+OUTSIDE = {"asset": {"version": "2.0"}, "buffers": [{"uri": "../points.bin", "byteLength": 4}]}
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("a.glb", glb(OUTSIDE), "own folder"),
+        ("a.glb", glb({"images": [{"uri": "/etc/passwd"}]}), "own folder"),
+        ("a.glb", glb({}, size=2**32 - 1), "byte 8.*cut short"),
+        ("a.glb", glb({}, length=2**32 - 16), "byte 12"),
+        ("a.glb", glb({}, version=9), "byte 4"),
+        ("a.glb", b"glTF", "starts with"),
+        ("a.glb", b"this is no mesh at all", "starts with"),
+        ("a.gltf", b"[" * 100_000, "no glTF"),
+        ("a.gltf", b"[]", "no glTF"),
+        ("a.gltf", b'{"images": 3}', "no glTF"),
+        ("a.fbx", b"Kaydara FBX Binary  \0" + b"RelativeFilename" + b"../../secret.png", "names pictures"),
+    ],
+)
+def test_files_that_name_others_or_lie_of_their_size_never_reach_open3d(tmp_path, name, content, said):
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(FormatError, match=rf"{name}.*{said}"):
+        require_own_files(path)
