@@ -8,16 +8,19 @@ import tempfile
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.errors import FormatError, PluginError
+from orbiframe.errors import FitError, FormatError, PluginError
 from orbiframe.options import checked_options
 from orbiframe.plugin import Component
 from orbiframe.polyhedron import Polyhedron
 from orbiframe.suggestion import did_you_mean
+
+if TYPE_CHECKING:
+    from orbiframe.surface import OrbifoldSurface
 
 SIZE_LIMIT = 2**32
 
@@ -75,15 +78,22 @@ def write(
     `read`.
     """
     path = Path(path)
-    # Through a link the file behind it is written, as by any other program.
-    target = Path(os.path.realpath(path)) if path.is_symlink() else path
-    require_writable(target)
     require_sound(polyhedron, path)
-    writer = _component(path, registry, "writer", format, options)
-    with _folder_beside(target) as folder:
-        made = Path(folder) / path.name
-        _guarded(path, "writing", writer, made, polyhedron)
-        _move(made, target)
+    _write_whole(path, _component(path, registry, "writer", format, options), polyhedron)
+
+
+def export(path: Path, surface: OrbifoldSurface, registry: Components) -> None:
+    """Write a surface itself, exactly, by the exporter of the file's suffix.
+
+    The file appears whole or not at all, as in `write`. Raises FormatError where the place is unfit or the exporter
+    fails, FitError for a surface that has no exact patches.
+    """
+    _write_whole(Path(path), _component(Path(path), registry, "exporter", None, None), surface)
+
+
+def exports(path: Path, registry: Components) -> bool:
+    """Whether an exporter writes files with this suffix."""
+    return any(path.suffix.lower() in c.suffixes for c in registry.components("exporter"))
 
 
 # ---- which component ----------------------------------------------------------------------------------------------
@@ -171,10 +181,21 @@ def _guarded(path: Path, doing: str, component: Callable[..., object], *argument
     """Call a reader or writer; whatever it raises becomes a FormatError that names the file."""
     try:
         return component(*arguments)
-    except (FormatError, PluginError) as error:
+    except (FitError, FormatError, PluginError) as error:
         raise type(error)(str(error).replace(str(arguments[0]), str(path))) from error
     except (Exception, SystemExit) as error:
         raise FormatError(f"{path}: {doing} failed: {_described(error)}") from error
+
+
+def _write_whole(path: Path, writer: Callable[..., object], content: object) -> None:
+    """Have a file made in a folder beside its place and then moved there."""
+    # Through a link the file behind it is written, as by any other program.
+    target = Path(os.path.realpath(path)) if path.is_symlink() else path
+    require_writable(target)
+    with _folder_beside(target) as folder:
+        made = Path(folder) / path.name
+        _guarded(path, "writing", writer, made, content)
+        _move(made, target)
 
 
 def _described(error: BaseException) -> str:

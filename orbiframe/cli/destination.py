@@ -9,12 +9,25 @@ from orbiframe.errors import FormatError, UsageError
 from orbiframe.registry import Registry
 
 
-def require_destination(path: Path, registry: Registry, format: str | None = None) -> None:
+def require_destination(path: Path, registry: Registry, format: str | None = None, *, kind: str = "writer") -> None:
     """Raise FormatError unless a writer takes the file (by its suffix, or the named format) and it can be made."""
-    from orbiframe.formats import component_name
+    from orbiframe.formats import component_name, exports
 
     require_folder(path)
-    component_name(path, registry, "writer", format)
+    if kind == "writer" and format is None and exports(path, registry):
+        _require_writer(path, registry)
+    name = component_name(path, registry, kind, format)
+    if kind == "exporter":
+        registry.load(kind, name)  # a missing library is found before the fit, not after it
+
+
+def _require_writer(path: Path, registry: Registry) -> None:
+    """Raise FormatError for a format that holds exact surfaces only."""
+    if not any(path.suffix.lower() in c.suffixes for c in registry.components("writer")):
+        raise FormatError(
+            f"{path} holds exact surfaces, which need piecewise polynomials from `orbiframe fit`: add --basis ps2 or "
+            "--basis ps6; a mesh goes to a file such as surface.ply"
+        )
 
 
 def require_folder(path: Path) -> None:

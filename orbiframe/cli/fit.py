@@ -50,16 +50,19 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     for path in config.plugins:
         registry.add_file(path)
     config.checked(registry)
-    _require_destinations(args, registry)
+    _require_destinations(args, config, registry)
     mesh = _repaired(args, config, registry) if repairs_asked(args) else args.mesh
     result = pipeline.fit(mesh, config, registry, Progress(quiet=args.quiet))
-    formats.write(args.output, result.output, registry)
+    if exact := _exact(args, config, registry):
+        formats.export(args.output, result.surface, registry)
+    else:
+        formats.write(args.output, result.output, registry)
     if args.save:
         save_surface(result.surface, args.save)
     if args.report:
         write_report(args.report, result.report)
     if not args.quiet:
-        print(json_text(result.report) if args.json else summary(result.report))
+        print(json_text(result.report) if args.json else summary(result.report, exact=exact))
     return 0
 
 
@@ -85,8 +88,16 @@ def overrides(args: argparse.Namespace) -> list[str]:
     return [*args.set, *(f"{key}={value}" for key, value in named.items() if value is not None)]
 
 
-def _require_destinations(args: argparse.Namespace, registry: Registry) -> None:
-    require_destination(args.output, registry)
+def _exact(args: argparse.Namespace, config: Config, registry: Registry) -> bool:
+    """Whether the surface itself is written and not a mesh on it: where the format and the functions allow it."""
+    from orbiframe.exact_patches import has_exact_patches
+    from orbiframe.formats import exports
+
+    return exports(args.output, registry) and has_exact_patches(registry.load("basis", config.basis.name))
+
+
+def _require_destinations(args: argparse.Namespace, config: Config, registry: Registry) -> None:
+    require_destination(args.output, registry, kind="exporter" if _exact(args, config, registry) else "writer")
     require_other_file(args.output, args.mesh)
     for path in (args.report, args.save):
         if path is not None:

@@ -20,6 +20,7 @@ POSITIONAL = {
     "fitter": 0,
     "reader": 1,
     "writer": 2,
+    "exporter": 2,
     "command": 1,
 }
 
@@ -60,8 +61,8 @@ def summary_is_one_line(component: Component) -> None:
 
 
 def suffixes_are_written_alike(component: Component) -> None:
-    """Readers and writers name suffixes with a dot in lower case; other kinds name none."""
-    if component.kind in ("reader", "writer"):
+    """Readers, writers and exporters name suffixes with a dot in lower case; other kinds name none."""
+    if component.kind in ("reader", "writer", "exporter"):
         assert component.suffixes, f"a {component.kind} names its file suffixes"
     else:
         assert not component.suffixes, f"a {component.kind} has no file suffixes"
