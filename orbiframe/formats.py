@@ -167,6 +167,8 @@ def _folder_beside(path: Path) -> tempfile.TemporaryDirectory[str]:
 def _absent(path: Path, error: Exception) -> str:
     if not isinstance(error, FileNotFoundError):
         return f"{path}: the file cannot be reached: {error}"
+    if path.is_symlink():
+        return f"{path}: this is a link to {os.readlink(path)}, which is not there"
     folder = path.parent
     siblings = os.listdir(folder) if folder.is_dir() and os.access(folder, os.R_OK) else []
     return f"{path}: there is no such file.{did_you_mean(path.name, siblings)}"

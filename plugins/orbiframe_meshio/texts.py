@@ -36,7 +36,7 @@ class EndingText(io.TextIOWrapper):
 
     _asked = 0
 
-    def readline(self, size: int | None = -1, /) -> str:
+    def readline(self, size: int | None = -1, /) -> str:  # type: ignore[override]
         """The next line. Raises EOFError where there is none, from the tenth time on."""
         line = super().readline(-1 if size is None else size)
         self._asked = 0 if line else self._asked + 1

@@ -191,3 +191,8 @@ def test_what_welding_did_is_noted(orbiframe, cube, tmp_path):
     assert note in orbiframe("info", tmp_path / "cube.txt", "-i", "stl").out.splitlines()
     ran = orbiframe("info", tmp_path / "cube.txt", "-i", "stl", "--json")
     assert json.loads(ran.out)["notes"][0]["count"] == 28
+
+
+def test_a_link_that_leads_nowhere_is_called_one(orbiframe, tmp_path):
+    (tmp_path / "link.off").symlink_to("gone.off")
+    assert "this is a link to gone.off, which is not there" in orbiframe("info", tmp_path / "link.off").err
