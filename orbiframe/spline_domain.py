@@ -10,14 +10,18 @@ from orbiframe.geodesic_triangulation import GeodesicTriangulation
 from orbiframe.spacing import edge_graph, farthest_points
 from orbiframe.triangulation import Triangulation
 
+# The longest edge on the sphere: the ends of an edge of length pi have no geodesic between them.
+_LONGEST = 0.9 * np.pi
+
 
 def spline_domain(triangulation: Triangulation, vertices: int) -> GeodesicTriangulation:
     """The Delaunay triangulation of X/H with `vertices` sites, spread evenly over the surface in space.
 
     The sites are vertices of the mesh, farthest points by the lengths of edges in space from the vertex farthest from
     the centroid on; the triangles are Delaunay in X. The result is a triangulation of X/H with positive triangles,
-    down to one vertex (on the sphere and the projective plane down to what its geodesic triangles need). Raises
-    FitError if the mesh has fewer distinct vertices, or the sphere too few sites; MapError if the map has folds.
+    down to one vertex (on the sphere and the projective plane down to what its geodesic triangles need, with a few more
+    sites where an edge would be almost half of a great circle). Raises FitError if the mesh has fewer distinct vertices,
+    or the sphere too few sites; MapError if the map has folds.
     """
     x = triangulation.polyhedron.vertices
     first = int(np.argmax(np.linalg.norm(x - x.mean(axis=0), axis=1)))
@@ -30,4 +34,6 @@ def spline_domain(triangulation: Triangulation, vertices: int) -> GeodesicTriang
     start = GeodesicTriangulation.of_map(triangulation)
     number = np.empty(len(x), dtype=np.intp)
     number[triangulation.polyhedron.triangles] = start.vertex
-    return delaunay_of_vertices(start, number[chosen]).triangulation
+    found = delaunay_of_vertices(start, number[chosen]).triangulation
+    too_long = found.geometry.curvature > 0 and found.edge_lengths.max() > _LONGEST
+    return spline_domain(triangulation, vertices + 1) if too_long else found

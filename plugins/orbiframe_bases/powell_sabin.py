@@ -100,6 +100,8 @@ class PowellSabin2(PowellSabin):
     The functions of a vertex are the splines whose jet there is one Bernstein polynomial on a triangle on the tangent
     plane that holds the split points of its star, so they are not negative; in all three geometries the constant 1 has
     all coefficients 1 (Maes and Bultheel, 2007, for S^2).
+
+    triangulation: the map of a mesh, on which a domain for about `size` functions is made, or a domain itself.
     """
 
     polynomial_degree, jet_order, continuity = 2, 1, 1
@@ -117,24 +119,38 @@ class PowellSabin2(PowellSabin):
 
 
 class PowellSabin3(PowellSabin):
-    """C1 cubic splines with six functions a vertex, C2 at the vertices and across the edges of the triangulation."""
+    """C1 cubic splines with six functions a vertex, C2 at the vertices and across the edges of the triangulation.
+
+    triangulation: the map of a mesh, on which a domain for about `size` functions is made, or a domain itself.
+    """
 
     polynomial_degree, jet_order, continuity = 3, 2, 1
 
 
 class PowellSabin4(PowellSabin):
-    """C1 quartic splines with six functions a vertex and one a triangle, C2 inside of the triangles."""
+    """C1 quartic splines with six functions a vertex and one a triangle, C2 inside of the triangles.
+
+    triangulation: the map of a mesh, on which a domain for about `size` functions is made, or a domain itself.
+    """
 
     polynomial_degree, jet_order, continuity, in_face = 4, 2, 1, 1
 
 
 class PowellSabin5(PowellSabin):
-    """C2 quintic splines with ten functions a vertex and one a triangle, C3 at the vertices."""
+    """C2 quintic splines with ten functions a vertex and one a triangle, C3 at the vertices.
+
+    triangulation: the map of a mesh, on which a domain for about `size` functions is made, or a domain itself.
+    """
 
     polynomial_degree, jet_order, continuity, in_face = 5, 3, 2, 1
 
 
 class PowellSabin6(PowellSabin):
-    """C2 splines of degree 6 with ten functions a vertex and one an edge, C3 at the vertices; constants are exact."""
+    """C2 splines of degree 6 with ten functions a vertex and one an edge, C3 inside of the triangles.
+
+    They contain the constants in all geometries.
+
+    triangulation: the map of a mesh, on which a domain for about `size` functions is made, or a domain itself.
+    """
 
     polynomial_degree, jet_order, continuity, on_edge = 6, 3, 2, 1
