@@ -7,8 +7,10 @@ import numpy as np
 from orbiframe.delaunay import delaunay_of_vertices
 from orbiframe.errors import FitError
 from orbiframe.geodesic_triangulation import GeodesicTriangulation
+from orbiframe.sites import lloyd
 from orbiframe.spacing import edge_graph, farthest_points
 from orbiframe.triangulation import Triangulation
+from orbiframe.voronoi import cell_areas
 
 # The longest edge on the sphere: the ends of an edge of length pi have no geodesic between them.
 _LONGEST = 0.9 * np.pi
@@ -20,8 +22,8 @@ def spline_domain(triangulation: Triangulation, vertices: int) -> GeodesicTriang
     The sites are vertices of the mesh, farthest points by the lengths of edges in space from the vertex farthest from
     the centroid on; the triangles are Delaunay in X. The result is a triangulation of X/H with positive triangles,
     down to one vertex (on the sphere and the projective plane down to what its geodesic triangles need, with a few more
-    sites where an edge would be almost half of a great circle). Raises FitError if the mesh has fewer distinct vertices,
-    or the sphere too few sites; MapError if the map has folds.
+    sites where an edge would be almost half of a great circle). Raises FitError if the mesh has fewer distinct
+    vertices, or the sphere too few sites; MapError if the map has folds.
     """
     x = triangulation.polyhedron.vertices
     first = int(np.argmax(np.linalg.norm(x - x.mean(axis=0), axis=1)))
