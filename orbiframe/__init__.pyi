@@ -67,6 +67,12 @@ from orbiframe.quotient import divide_jets as divide_jets
 from orbiframe.registry import Registry as Registry
 from orbiframe.samples import Samples as Samples
 from orbiframe.shared_edges import along_reference as along_reference, shared_normals as shared_normals
+from orbiframe.sites import (
+    lloyd as lloyd,
+    poisson_disc as poisson_disc,
+    uniform_points as uniform_points,
+    vertex_points as vertex_points,
+)
 from orbiframe.spacing import (
     Graph as Graph,
     Spacing as Spacing,
@@ -88,6 +94,7 @@ from orbiframe.topology import (
     surface_type as surface_type,
 )
 from orbiframe.triangulation import Triangulation as Triangulation
+from orbiframe.voronoi import cell_areas as cell_areas, circumcentres as circumcentres, circumradii as circumradii
 from orbiframe.word import Word as Word, standard_word as standard_word
 
 __version__: str

@@ -27,7 +27,7 @@ _NEAR_PATCH = 1.5
 
 # For functions that make no array: they need not count who refers to the arrays they are given, which takes longer than
 # what they do with them.
-bare = njit(cache=True, _nrt=False)
+bare = njit(cache=True, _nrt=False)  # type: ignore[call-overload]
 
 
 class Cells(NamedTuple):
@@ -35,7 +35,8 @@ class Cells(NamedTuple):
 
     curvature, corners, twin, same, gluing, patch and placement as in `GeodesicTriangulation`; twin is -1 in a slot
     without a triangle. vertex: (3 F,), the vertex at every corner; seat: (V,), some corner 3 f + c of every vertex;
-    route: (F, 3, 3), the isometry from the frame that a slot had at first to its frame now. stack and queued: edges
+    route: (F, 3, 3), the isometry from the frame that a slot had at first (or when the
+    insertion of sites began) to its frame now. stack and queued: edges
     that wait to be looked at; work: matrices for use within one operation.
     """
 

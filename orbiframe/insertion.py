@@ -25,6 +25,7 @@ def insert(cells: Cells, faces: int, vertices: int, sites: Located, area: float)
     (Amenta, Choi, Rote, Incremental constructions con BRIO, 2003). Raises MapError where a site is lost.
     """
     vertex = np.full(len(sites.face), -1)
+    cells.route[:] = np.eye(3)
     near = _SAME**2 * area / 2
     vertices, lost = _insert(cells, faces, vertices, _rounds(sites), sites.face, sites.x, near, vertex)
     if lost >= 0:
