@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 _STEPS = 40
-_PATIENCE, _LIMIT = 12, 100
+_PATIENCE, _LIMIT = 15, 100
 _SHORT = 0.3
 _DECREMENT = 1e-10
 _SMALLEST_STEP = 1e-6
@@ -142,7 +142,7 @@ class HarmonicEnergy:
             a * mixed + b * tail[:, :, None] * head[:, None, :],
         )
 
-    def newton_step(self, points: Floats, tolerance: float = 1e-8) -> tuple[Floats, float]:
+    def newton_step(self, points: Floats, tolerance: float = 1e-5) -> tuple[Floats, float]:
         """The Newton step in the frames at the points, (V, 2), and the decrement g^T H^-1 g, to a relative tolerance.
 
         The real system of size 2V is solved by conjugate gradients. The preconditioner is the complex linear part of
