@@ -42,4 +42,10 @@ def orbiframe_components() -> list[Component]:
             "orbiframe_bases.tensor_bspline:TensorBSpline",
             "products of periodic B-splines of any degree and knots on a torus or Klein bottle",
         ),
+        Component(
+            "basis",
+            "dms",
+            "orbiframe_bases.dms:DMS",
+            "simplex splines over clouds of knots, as smooth as wanted: C2 cubics, C3 quartics",
+        ),
     ]

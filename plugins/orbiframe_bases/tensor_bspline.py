@@ -7,7 +7,6 @@ from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
-from orbiframe_bases.periodic_bsplines import PeriodicBSplines
 from scipy.sparse import csr_array
 
 from orbiframe import (
@@ -20,6 +19,7 @@ from orbiframe import (
     Triangulation,
     UsageError,
 )
+from orbiframe_bases.periodic_bsplines import PeriodicBSplines
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -142,8 +142,8 @@ def _knots(name: str, given: Sequence[float] | None, count: int, degree: int) ->
     value, times = np.unique(knots, return_counts=True)
     if times.max() > degree:
         raise UsageError(
-            f"option {name} of tensor-bspline has the knot {value[times.argmax()]} {times.max()} times; at most {degree} "
-            "times, the degree, keep the functions continuous"
+            f"option {name} of tensor-bspline repeats {value[times.argmax()]} {times.max()} times; at most {degree}, "
+            "the degree, keep the functions continuous"
         )
     return knots
 

@@ -42,7 +42,7 @@ def assert_periodic(orbifold: Orbifold, lattice: FlatLattice) -> None:
     st.floats(0.3, 3), st.floats(-2, 2), st.floats(0.3, 3), st.floats(0, 6.2), st.integers(-4, 4), st.integers(-4, 4)
 )
 def test_the_lattice_of_a_torus_is_found_in_any_basis(a, skew, b, angle, m, n) -> None:
-    """Generators mixed by a matrix of determinant 1, in a turned frame: the basis spans the same lattice and is short."""
+    """Generators mixed by a matrix of determinant 1, in a turned frame: the same lattice, with short vectors."""
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     vectors = turn @ np.array([[a, skew], [0, b]])
     mixed = vectors @ np.array([[1, m], [n, 1 + m * n]])
