@@ -16,14 +16,15 @@ from orbiframe.voronoi import cell_areas
 _LONGEST = 0.9 * np.pi
 
 
-def spline_domain(triangulation: Triangulation, vertices: int) -> GeodesicTriangulation:
+def spline_domain(triangulation: Triangulation, vertices: int, *, smoothing: int = 3) -> GeodesicTriangulation:
     """The Delaunay triangulation of X/H with `vertices` sites, spread evenly over the surface in space.
 
-    The sites are vertices of the mesh, farthest points by the lengths of edges in space from the vertex farthest from
-    the centroid on; the triangles are Delaunay in X. The result is a triangulation of X/H with positive triangles,
-    down to one vertex (on the sphere and the projective plane down to what its geodesic triangles need, with a few more
-    sites where an edge would be almost half of a great circle). Raises FitError if the mesh has fewer distinct
-    vertices, or the sphere too few sites; MapError if the map has folds.
+    The sites are vertices of the mesh at first, farthest points by the lengths of edges in space from the vertex
+    farthest from the centroid on. Then as many steps of Lloyd as `smoothing` says make the triangles rounder; with the
+    square of the density of the sites as weight, they keep it. The triangles are Delaunay in X and positive, down to
+    one vertex (on the sphere and the projective plane down to what its geodesic triangles need, with a few more sites
+    where an edge would be almost half of a great circle). Raises FitError if the mesh has fewer distinct vertices;
+    MapError if the sphere has too few sites or the map has folds.
     """
     x = triangulation.polyhedron.vertices
     first = int(np.argmax(np.linalg.norm(x - x.mean(axis=0), axis=1)))
@@ -37,5 +38,6 @@ def spline_domain(triangulation: Triangulation, vertices: int) -> GeodesicTriang
     number = np.empty(len(x), dtype=np.intp)
     number[triangulation.polyhedron.triangles] = start.vertex
     found = delaunay_of_vertices(start, number[chosen]).triangulation
-    too_long = found.geometry.curvature > 0 and found.edge_lengths.max() > _LONGEST
-    return spline_domain(triangulation, vertices + 1) if too_long else found
+    if found.geometry.curvature > 0 and found.edge_lengths.max() > _LONGEST:
+        return spline_domain(triangulation, vertices + 1, smoothing=smoothing)
+    return lloyd(found, smoothing, cell_areas(found) ** -2.0) if smoothing else found

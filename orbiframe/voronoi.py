@@ -51,4 +51,4 @@ def cell_areas(triangulation: GeodesicTriangulation) -> Floats:
     """The area of the Voronoi cell of every vertex of a Delaunay triangulation, (V,); their sum is that of X/H."""
     p = kites(triangulation)
     area = triangulation.geometry.triangle_area(p[..., 0, :], p[..., 1, :], p[..., 2, :]).sum(axis=-1)
-    return np.bincount(triangulation.vertex.ravel(), weights=area.ravel())
+    return np.asarray(np.bincount(triangulation.vertex.ravel(), weights=area.ravel()), dtype=np.float64)
