@@ -17,8 +17,9 @@ from orbiframe.quadrature import triangle_rule
 Floats = NDArray[np.float64]
 
 _CHUNK = 1 << 22  # numbers in memory at a time
-# Gauss points along a direction beyond the degree, for micro triangles up to these diameters.
-_MORE_POINTS = ((0.7, 3), (1.3, 5), (2.0, 8), (2.6, 12), (np.inf, 20))
+# Gauss points along a direction beyond the degree, for micro triangles up to these diameters h: the error falls by
+# about 0.06 h^2 with every point, and ten digits are wanted.
+_MORE_POINTS = ((0.15, 4), (0.35, 5), (0.7, 6), (1.0, 8), (1.3, 10), (2.0, 14), (2.6, 19), (np.inf, 28))
 
 
 class PiecewisePolynomials(Protocol):
@@ -103,7 +104,7 @@ class _Tables(NamedTuple):
 
 
 def _points(space: PiecewisePolynomials) -> int:
-    """Gauss points along each direction, enough for products to be right to rounding; one number for all forms."""
+    """Gauss points along each direction, enough for products to be right to ten digits; one number for all forms."""
     geometry = space.domain.geometry
     if geometry.curvature == 0:
         return space.degree + 1
