@@ -79,18 +79,21 @@ class OrbitSumBasis(DifferentiableBasis):
         self.size = len(support)
 
     @abstractmethod
-    def profile(self, t: Floats) -> tuple[Floats, Floats, Floats]:
-        """f, f' and f'' at t >= 0, (n,) each: positive before 1, zero from 1 on."""
+    def profile(self, t: Floats) -> tuple[Floats, ...]:
+        """f, f' and f'' at t >= 0, (n,) each: positive before 1, zero from 1 on; f''' too, for jets of order 3."""
 
     def design_matrix(self, points: Points) -> csr_array:
         """The values of all functions at n points, sparse (n, size). Raises FitError at a point that none reaches."""
         return self.jet_matrices(points, 0)[0]
 
     def jet_matrices(self, points: Points, order: int) -> list[csr_array]:
-        """See `DifferentiableBasis`. Raises FitError at a point that no function reaches."""
+        """See `DifferentiableBasis`. Raises FitError at a point that no function reaches.
+
+        Order 3 needs f''' from the profile: FitError where it gives none.
+        """
         pairs = reaching_pairs(self.orbifold, self.centres, self.support, points, slopes=order > 0)
         blocks = [self._jets(block, points, order) for block in pairs]
-        return _assemble(blocks, (len(points.patch), self.size), (1, 3, 6)[order])
+        return _assemble(blocks, (len(points.patch), self.size), JET_KINDS[order])
 
     def _jets(self, pairs: Pairs, points: Points, order: int) -> _Block:
         empty = np.flatnonzero(np.diff(pairs.start) == 0)
@@ -105,9 +108,9 @@ class OrbitSumBasis(DifferentiableBasis):
         return _Block(pairs.rows, start, column, divide_jets(jets, total, np.diff(start)))
 
     def _profile_jets(self, pairs: Pairs, order: int) -> Floats:
-        """The jets of f(c / c_i) from D c and Hess c = (1 - K c) g, (1, 3 or 6 rows, one column per pair)."""
+        """The jets of f(c / c_i) from D c and Hess c = (1 - K c) g, 1, 3, 6 or 12 rows, one column per pair."""
         support = self.support[pairs.column]
-        f, df, ddf = self.profile(pairs.versine / support)
+        f, df, ddf, *third = self.profile(pairs.versine / support)
         if order == 0:
             return np.array(f)[None]
         c1, c2 = pairs.slope.T
@@ -115,8 +118,37 @@ class OrbitSumBasis(DifferentiableBasis):
         if order == 1:
             return np.stack([f, df * c1, df * c2])
         ddf = ddf / support**2
-        trace = df * (1 - self.orbifold.geometry.curvature * pairs.versine)
-        return np.stack([f, df * c1, df * c2, ddf * c1**2 + trace, ddf * c1 * c2, ddf * c2**2 + trace])
+        turn = 1 - self.orbifold.geometry.curvature * pairs.versine
+        trace = df * turn
+        jets = [f, df * c1, df * c2, ddf * c1**2 + trace, ddf * c1 * c2, ddf * c2**2 + trace]
+        if order == 3:
+            bent = ddf * turn
+            drift = bent - self.orbifold.geometry.curvature * df
+            jets += _third_jets(pairs.slope.T, bent, drift, self._third(third) / support**3)
+        return np.stack(jets)
+
+    def _third(self, given: list[Floats]) -> Floats:
+        """f''' from what the profile gives beyond f''."""
+        if given:
+            return given[0]
+        raise FitError(
+            f"the profile of {type(self).__name__} gives f, f' and f'' alone; third derivatives need f''' too, as its "
+            "fourth result"
+        )
+
+
+def _third_jets(c: Floats, bent: Floats, drift: Floats, third: Floats) -> list[Floats]:
+    """The derivatives along w = e_k of the Hessian entries u = e_i, v = e_j of f(c); D_w Hess c = -K c_w g, so they are
+
+    f''' c_u c_v c_w + f'' (1 - K c)(c_w <u, v> + c_u <v, w> + c_v <u, w>) - f' K c_w <u, v>.
+
+    c: (2, n), the derivative of the versine; bent: f'' (1 - K c); drift: bent - K f'; third: f'''.
+    """
+    return [
+        third * c[i] * c[j] * c[k] + (i == j) * drift * c[k] + bent * ((j == k) * c[i] + (i == k) * c[j])
+        for k in (0, 1)
+        for i, j in ((0, 0), (0, 1), (1, 1))
+    ]
 
 
 class _Block:

@@ -48,4 +48,40 @@ def orbiframe_components() -> list[Component]:
             "orbiframe_bases.dms:DMS",
             "simplex splines over clouds of knots, as smooth as wanted: C2 cubics, C3 quartics",
         ),
+        Component(
+            "basis",
+            "simplex",
+            "orbiframe_bases.simplex:Simplex",
+            "B-splines of the vertices of a triangulation: C1 quadratics and C2 cubics, not negative, few functions",
+        ),
+        Component(
+            "basis",
+            "clough-tocher",
+            "orbiframe_bases.clough_tocher:CloughTocher",
+            "C1 cubics on triangles split in three: gradients at vertices, slopes across edges",
+        ),
+        Component(
+            "basis",
+            "argyris",
+            "orbiframe_bases.argyris:Argyris",
+            "C1 polynomials of degree 5 or more on whole triangles",
+        ),
+        Component(
+            "basis",
+            "zenisek",
+            "orbiframe_bases.argyris:Zenisek",
+            "C2 polynomials of degree 9 or more on whole triangles: most digits a function",
+        ),
+        Component(
+            "basis",
+            "hybrid",
+            "orbiframe_bases.hybrid:Hybrid",
+            "C1 rational blends of cubics on whole triangles (Liu and Schumaker)",
+        ),
+        Component(
+            "basis",
+            "wendland",
+            "orbiframe_bases.wendland:Wendland",
+            "polynomials of compact support with 2, 4 or 6 derivatives, as wide as the surface is sampled",
+        ),
     ]
