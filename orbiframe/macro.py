@@ -241,10 +241,10 @@ def _on_tangent_planes(domain: GeodesicTriangulation, plane: Floats) -> Floats:
 
 
 def edge_normals(domain: GeodesicTriangulation) -> Floats:
-    """Tangent vectors across the edges, as long as the edge, (F, 3, 3): on the plane of no edge, the same all along it.
+    """Normals of the edges that look into their triangles, as long as the edges, (F, 3, 3).
 
-    n = J w |e| / sqrt(w J w) with w = v_c x v_(c + 1) and J = diag(K, 1, 1), in the frame of each triangle. The gluing
-    takes those of the twin to n or, where both look inwards, to -n.
+    n = |e| J w / sqrt(w J w) with w = v_c x v_(c + 1) and J = diag(K, 1, 1), in the frame of each triangle: a vector
+    that is tangent to X and orthogonal to the edge all along it. The gluing takes the normal of the twin to -n.
     """
     x = domain.corners
     across = np.cross(x, np.roll(x, -1, axis=1))
