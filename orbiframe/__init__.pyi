@@ -34,9 +34,10 @@ from orbiframe.errors import (
     UsageError as UsageError,
 )
 from orbiframe.exact_patches import (
+    PeriodicPatch as PeriodicPatch,
     QuadrilateralPatches as QuadrilateralPatches,
     TrianglePatches as TrianglePatches,
-    triangle_patches as triangle_patches,
+    patches_of as patches_of,
 )
 from orbiframe.fitter import Fitter as Fitter
 from orbiframe.flat_lattice import FlatLattice as FlatLattice
@@ -86,6 +87,7 @@ from orbiframe.spacing import (
 from orbiframe.spin import Spin as Spin
 from orbiframe.surface import OrbifoldSurface as OrbifoldSurface
 from orbiframe.surface_file import load_surface as load_surface, save_surface as save_surface
+from orbiframe.tensor_basis import TensorBasis as TensorBasis
 from orbiframe.topology import (
     SurfaceType as SurfaceType,
     doubled_edges as doubled_edges,

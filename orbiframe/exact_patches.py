@@ -1,4 +1,4 @@
-"""Exact patches: a surface of piecewise polynomials as rational Bezier triangles and quadrilaterals."""
+"""Exact patches: a surface of piecewise polynomials as rational Bezier triangles, quadrilaterals, or one NURBS."""
 
 from __future__ import annotations
 
@@ -14,28 +14,34 @@ from orbiframe.bernstein import (
     bernstein_values,
     blossom,
     coefficient_count,
+    degree_of,
     exponent_number,
     exponents,
     multinomials,
 )
 from orbiframe.element_basis import ElementBasis
 from orbiframe.errors import FitError
+from orbiframe.patch_gluing import Gluing, alike, cell_gluing, periodic_grid, quartered
 from orbiframe.surface import OrbifoldSurface
+from orbiframe.tensor_basis import TensorBasis
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
 class TrianglePatches:
     """Rational Bezier triangles: S(lambda) = sum w_a P_a B_a(lambda) / sum w_a B_a(lambda), lambda of sum 1.
 
-    degree; points: (N, n, 3), control points in the order of `exponents(degree)`; weights: (N, n), positive. The
-    corners of each patch run counterclockwise seen from outside, as the faces of the mesh do.
+    degree; points: (N, n, 3), control points in the order of `exponents(degree)`; weights: (N, n), positive; gluing:
+    of their sides. On an orientable surface the corners of all patches run counterclockwise seen from outside, where
+    the signed volume is positive.
     """
 
     degree: int
     points: Floats
     weights: Floats
+    gluing: Gluing
 
     def evaluate(self, barycentric: Floats) -> Floats:
         """The points at barycentric coordinates (m, 3) of every patch, (N, m, 3)."""
@@ -48,53 +54,139 @@ class TrianglePatches:
         made = _quadrilateral_forms(self.degree) @ homogeneous[:, None]
         side = self.degree + 1
         weights = made[..., 3].reshape(-1, side, side)
-        return QuadrilateralPatches(made[..., :3].reshape(-1, side, side, 3) / weights[..., None], weights)
+        points = made[..., :3].reshape(-1, side, side, 3) / weights[..., None]
+        return QuadrilateralPatches(points, weights, quartered(self.gluing))
 
 
 @dataclass(frozen=True, eq=False)
 class QuadrilateralPatches:
-    """Rational tensor product Bezier patches: points (N, d + 1, d + 1, 3), [patch, s, t], and weights."""
+    """Rational tensor product Bezier patches: points (N, d + 1, d + 1, 3), [patch, s, t]; weights; gluing.
+
+    Sides 0 to 3 of a patch run along s at t = 0, along t at s = 1, and back.
+    """
 
     points: Floats
     weights: Floats
+    gluing: Gluing
+
+    @property
+    def degree(self) -> int:
+        """The degree in either direction."""
+        return self.weights.shape[1] - 1
+
+    def evaluate(self, s: Floats, t: Floats) -> Floats:
+        """The points at parameters (m,) of every patch, (N, m, 3)."""
+        a, b = (_bernstein(self.degree, x) for x in (s, t))
+        values = self.weights * (a[:, None, :, None] * b[:, None, None, :])
+        return np.asarray(np.einsum("mnst,nstk->nmk", values, self.points) / values.sum(axis=(2, 3)).T[..., None])
+
+    @property
+    def net_volume(self) -> float:
+        """The signed volume inside of the control nets, as triangles: near to that of the surface, and exact at last."""
+        p = self.points - self.points.mean(axis=(0, 1, 2))
+        a, b, c, d = p[:, :-1, :-1], p[:, 1:, :-1], p[:, 1:, 1:], p[:, :-1, 1:]
+        return float(np.sum(np.cross(b, c) * a + np.cross(c, d) * a) / 6)
 
 
-def triangle_patches(surface: OrbifoldSurface) -> TrianglePatches:
+@dataclass(frozen=True, eq=False)
+class PeriodicPatch:
+    """One periodic tensor product B-spline surface: S(u, v) = sum P_ij N_i(u) N_j(v) of one degree.
+
+    knots: those of one period in u and in v, rising; N_j has the knots j, ..., j + degree + 1. points: (n_u, n_v, 3).
+    periods: 1 and 1 on a torus; 2 and 1 on a Klein bottle, where glide is true and S(u + 1, -v) = S(u, v), so that any
+    interval of length 1 of u is the whole surface. On a torus the normal S_u x S_v points outward.
+    """
+
+    degree: int
+    knots: tuple[Floats, Floats]
+    points: Floats
+    periods: tuple[float, float]
+    glide: bool
+
+    def quadrilaterals(self) -> QuadrilateralPatches:
+        """The polynomial pieces as Bezier patches of weight 1, each part of the surface once."""
+        u, v = (np.unique(knots) for knots in self.knots)
+        rows, columns = (_pieces(k, self.degree, p) for k, p in zip(self.knots, self.periods, strict=True))
+        if self.glide:
+            rows, u = rows[: len(u) // 2], u[: len(u) // 2]
+        points = np.einsum("pai,qbj,ijk->pqabk", rows, columns, self.points)
+        points = points.reshape(-1, self.degree + 1, self.degree + 1, 3)
+        mirror = (len(v) - 1 - (v[0] > 0) - np.arange(len(v))) % len(v) if self.glide else None
+        return QuadrilateralPatches(points, np.ones(points.shape[:3]), periodic_grid((len(u), len(v)), mirror))
+
+    def transposed(self) -> PeriodicPatch:
+        """The same surface with u and v exchanged, and the other side outside; not on a Klein bottle."""
+        (u, v), (p, q) = self.knots, self.periods
+        return PeriodicPatch(self.degree, (v, u), np.swapaxes(self.points, 0, 1), (q, p), self.glide)
+
+
+def has_exact_patches(basis: object) -> bool:
+    """Whether a component makes functions with exact patches."""
+    return isinstance(basis, type) and issubclass(basis, ElementBasis | TensorBasis)
+
+
+def patches_of(surface: OrbifoldSurface) -> TrianglePatches | PeriodicPatch:
+    """The exact patches of a surface of piecewise polynomials: triangles, or one periodic patch of a tensor product.
+
+    Raises FitError for functions that are no piecewise polynomials, or none that have exact patches, and where a weight
+    is not positive.
+    """
+    if isinstance(surface.basis, TensorBasis):
+        return periodic_patch(surface, surface.basis)
+    if isinstance(surface.basis, ElementBasis):
+        return triangle_patches(surface, surface.basis)
+    raise FitError(
+        f"the functions of '{surface.basis_name or type(surface.basis).__name__}' are no piecewise polynomials, so the "
+        "surface has no exact patches; choose a spline basis such as ps2 or ps6, or write a mesh"
+    )
+
+
+def periodic_patch(surface: OrbifoldSurface, basis: TensorBasis) -> PeriodicPatch:
+    """The periodic patch of a tensor product on a torus or Klein bottle."""
+    points = surface.scale * basis.net(surface.coefficients) + surface.origin
+    glide = basis.lattice.glide
+    patch = PeriodicPatch(basis.degree, basis.knots, points, (2.0 if glide else 1.0, 1.0), glide)
+    return patch if glide or patch.quadrilaterals().net_volume > 0 else patch.transposed()
+
+
+def triangle_patches(surface: OrbifoldSurface, basis: ElementBasis) -> TrianglePatches:
     """The rational Bezier triangles of a surface of piecewise polynomials, one for each micro triangle.
 
     On a triangle of R^3 the surface is F(x) / rho(x)^d. For even degree, and in E^2, the weights are the coefficients
     of rho^d, a product of quadratic forms (in E^2: of linear ones); in the rational space S/W they are those of W.
-    Raises FitError for functions that are no piecewise polynomials, or none that have exact patches, and where a weight
-    is not positive.
     """
-    basis = surface.basis
-    if not isinstance(basis, ElementBasis):
-        raise FitError(
-            f"the functions of '{surface.basis_name or type(basis).__name__}' are no piecewise polynomials, so the "
-            "surface has no exact patches; choose a spline basis such as ps2 or ps6, or write a mesh"
-        )
-    numerator = surface.scale * basis.net(surface.coefficients)
     weights = _weights(basis)
+    _require_positive(weights)
+    points = surface.scale * basis.net(surface.coefficients) / weights[..., None] + surface.origin
+    sign = alike(basis.domain.twin, basis.domain.same)
+    patches = _turned(basis, points, weights, sign)
+    if patches.gluing.same.any() or patches.quadrilaterals().net_volume > 0:
+        return patches
+    return _turned(basis, points, weights, -sign)
+
+
+def _turned(basis: ElementBasis, points: Floats, weights: Floats, sign: Ints) -> TrianglePatches:
+    """The patches with their corners in the order that the signs of the triangles, (F,), ask for."""
+    count = coefficient_count(basis.degree)
+    turned = np.linalg.det(basis.cells) * sign[:, None] < 0
+    corners = np.where(turned[..., None], [0, 2, 1], [0, 1, 2])
+    cells = np.take_along_axis(basis.cells, corners[..., None], 2)
+    order = np.where(turned.reshape(-1, 1), _swapped(basis.degree), np.arange(count))
+    return TrianglePatches(
+        basis.degree,
+        np.take_along_axis(points.reshape(-1, count, 3), order[..., None], 1),
+        np.take_along_axis(weights.reshape(-1, count), order, 1),
+        cell_gluing(basis.domain, cells, sign),
+    )
+
+
+def _require_positive(weights: Floats) -> None:
     if not (weights > 0).all():
         worst = np.unravel_index(int(weights.argmin()), weights.shape)
         raise FitError(
             f"weight {worst[2]} of micro triangle {worst[1]} of triangle {worst[0]} is {weights[worst]:.3g}, and exact "
             "patches need positive ones; use more functions"
         )
-    points = numerator / weights[..., None] + surface.origin
-    count = coefficient_count(basis.degree)
-    order = np.where(
-        (np.linalg.det(basis.cells) < 0).reshape(-1, 1), _swapped(basis.degree)[None], np.arange(count)[None]
-    )
-    flat, flat_weights = points.reshape(-1, count, 3), weights.reshape(-1, count)
-    return TrianglePatches(
-        basis.degree, np.take_along_axis(flat, order[..., None], 1), np.take_along_axis(flat_weights, order, 1)
-    )
-
-
-def has_exact_patches(basis: object) -> bool:
-    """Whether a component makes functions with exact patches."""
-    return isinstance(basis, type) and issubclass(basis, ElementBasis)
 
 
 def _weights(basis: ElementBasis) -> Floats:
@@ -121,17 +213,13 @@ def _weights(basis: ElementBasis) -> Floats:
 
 def multiplied(first: Floats, second: Floats) -> Floats:
     """The coefficients of the product of two homogeneous polynomials, (..., n), from theirs."""
-    d1, d2 = (_degree(c.shape[-1]) for c in (first, second))
+    d1, d2 = (degree_of(c.shape[-1]) for c in (first, second))
     result = np.zeros((*np.broadcast_shapes(first.shape[:-1], second.shape[:-1]), coefficient_count(d1 + d2)))
     left, right = first * multinomials(d1), second * multinomials(d2)
     for i, a in enumerate(exponents(d1)):
         target = [exponent_number(a[1] + b[1], a[2] + b[2]) for b in exponents(d2)]
         result[..., target] += left[..., i, None] * right
     return np.asarray(result / multinomials(d1 + d2))
-
-
-def _degree(count: int) -> int:
-    return int(((8 * count + 1) ** 0.5 - 3) / 2 + 0.5)
 
 
 def _swapped(degree: int) -> NDArray[np.intp]:
@@ -160,3 +248,31 @@ def _quadrilateral_forms(degree: int) -> Floats:
                 arguments = [place for place, n in zip(places, counts, strict=True) for _ in range(n)]
                 forms[c, a, b] += share / (comb(degree, a) * comb(degree, b)) * blossom(unit, arguments)
     return forms.reshape(3, -1, len(unit))
+
+
+def _bernstein(degree: int, x: Floats) -> Floats:
+    """The Bernstein polynomials of one variable at (m,) parameters, (m, degree + 1)."""
+    k = np.arange(degree + 1)
+    binomial = np.array([float(comb(degree, i)) for i in k])
+    return np.asarray(binomial * x[:, None] ** k * (1 - x[:, None]) ** (degree - k))
+
+
+def _pieces(knots: Floats, degree: int, period: float) -> Floats:
+    """The Bezier points of the pieces between knots from the control points of a period: (pieces, degree + 1, n).
+
+    Point k of the piece on [a, b] is the blossom with k arguments b and degree - k arguments a (de Boor's algorithm).
+    """
+    count = len(knots)
+    place = np.arange(-degree, 2 * count + degree + 1)
+    line = knots[place % count] + period * (place // count)
+    span = degree + np.flatnonzero(np.diff(line[degree : degree + count + 1]) > 0)
+    ends = line[span], line[span + 1]
+    forms = np.zeros((len(span), degree + 1, count))
+    for k in range(degree + 1):
+        table = np.eye(count)[(span[:, None] - 2 * degree + np.arange(degree + 1)) % count]
+        for r in range(degree):
+            j = span[:, None] - degree + np.arange(r + 1, degree + 1)
+            share = (ends[int(r < k)][:, None] - line[j]) / (line[j + degree - r] - line[j])
+            table = (1 - share[..., None]) * table[:, :-1] + share[..., None] * table[:, 1:]
+        forms[:, k] = table[:, 0]
+    return forms

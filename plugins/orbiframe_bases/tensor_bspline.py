@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from orbiframe import (
-    DifferentiableBasis,
     FlatLattice,
     GeodesicTriangulation,
     GeometryError,
     Orbifold,
     Points,
+    TensorBasis,
     Triangulation,
     UsageError,
 )
@@ -33,7 +33,7 @@ _KINDS: tuple[tuple[int, ...], ...] = (
 )
 
 
-class TensorBSpline(DifferentiableBasis):
+class TensorBSpline(TensorBasis):
     """Products of periodic B-splines in the two lattice coordinates (u, v) of a torus or Klein bottle (paper, 3.2).
 
     On the torus B_i(u) B_j(v) for n1 and n2 knots of period 1. On the Klein bottle, where H contains the glide
@@ -84,6 +84,15 @@ class TensorBSpline(DifferentiableBasis):
             return number
         # f(u + 1, -v) = f(u, v): the coefficient of (i + n1, s(j)) is that of (i, j), s the reflection.
         return np.concatenate([number, number[:, self.v.reflection]])
+
+    @property
+    def knots(self) -> tuple[Floats, Floats]:
+        """See `TensorBasis`."""
+        return self.u.knots, self.v.knots
+
+    def net(self, coefficients: Floats) -> Floats:
+        """See `TensorBasis`."""
+        return np.asarray(coefficients[self.number])
 
     def design_matrix(self, points: Points) -> csr_array:
         """The values of all functions at n points, sparse (n, size)."""

@@ -1,67 +1,90 @@
-"""STEP and IGES files with exact rational patches, through Open CASCADE."""
+"""STEP and IGES files with exact patches, through Open CASCADE."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from OCP.BRep import BRep_Tool
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeSolid, BRepBuilderAPI_Sewing
-from OCP.BRepLib import BRepLib
-from OCP.Geom import Geom_BezierSurface
-from OCP.gp import gp_Pnt
+from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.IGESControl import IGESControl_Writer
+from OCP.IGESData import IGESData_GlobalSection
 from OCP.Interface import Interface_Static
 from OCP.Message import Message
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
-from OCP.TopAbs import TopAbs_SHELL
-from OCP.TopoDS import TopoDS
-from OCP.collections import Array2_double, Array2_gp_Pnt
+from OCP.TCollection import TCollection_HAsciiString
+from OCP.TopAbs import TopAbs_SOLID
 
-from orbiframe import FitError, OrbifoldSurface, QuadrilateralPatches, triangle_patches
+from orbiframe import FitError, OrbifoldSurface, __version__, patches_of
+from orbiframe_exact.shapes import shape_of
 
-_SEWING = 1e-7  # of the size of the surface: patches share their edges to rounding
+# Files have no time of day and no path, so that one surface always gives the same bytes.
+_TIME = "1970-01-01T00:00:00"
+_NAME = "surface"
+_SYSTEM = f"orbiframe {__version__}"
 
 
 def write_step(path: Path, surface: OrbifoldSurface) -> None:
-    """The surface as a shell of exact rational patches in a STEP file, three for each micro triangle.
+    """The surface as exact rational patches in a STEP file (AP214, millimetres), three for each micro triangle.
 
-    Raises FitError for a surface without exact patches, or where Open CASCADE fails.
+    A solid where it has an inside, else a shell; a tensor product is one periodic surface. Raises FitError for a
+    surface without exact patches, or where Open CASCADE fails.
     """
+    shape = shape_of(patches_of(surface))
     _silence()
     writer = STEPControl_Writer()
-    Interface_Static.SetCVal_s("write.step.unit", "MM")
-    _require(writer.Transfer(shape(surface), STEPControl_AsIs) == IFSelect_RetDone, "convert the shape to STEP")
+    for key, value in (("write.step.unit", "MM"), ("write.step.product.name", _NAME)):
+        Interface_Static.SetCVal_s(key, value)
+    # Curves in the parameter planes are lines that every reader finds again; they would double the file.
+    Interface_Static.SetIVal_s("write.surfacecurve.mode", 0)
+    _require(writer.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone, "convert the shape to STEP")
+    _sign_step(writer)
     _require(writer.Write(str(path)) == IFSelect_RetDone, "write the STEP file")
 
 
 def write_iges(path: Path, surface: OrbifoldSurface) -> None:
-    """The surface as exact rational patches in an IGES file; see `write_step`."""
+    """The surface as exact rational patches in an IGES file (5.3, millimetres); see `write_step`."""
+    shape = shape_of(patches_of(surface))
     _silence()
-    writer = IGESControl_Writer()
-    _require(bool(writer.AddShape(shape(surface))), "convert the shape to IGES")
+    writer = IGESControl_Writer("MM", int(shape.ShapeType() == TopAbs_SOLID))
+    _require(bool(writer.AddShape(shape)), "convert the shape to IGES")
     writer.ComputeModel()
+    _sign_iges(writer)
     _require(bool(writer.Write(str(path))), "write the IGES file")
 
 
-def shape(surface: OrbifoldSurface) -> Any:
-    """The surface as a shape of Open CASCADE: faces on rational Bezier surfaces, sewn together.
+def _sign_step(writer: Any) -> None:
+    header = APIHeaderSection_MakeHeader(writer.Model())
+    header.SetName(_text(_NAME))
+    header.SetTimeStamp(_text(_TIME))
+    header.SetAuthorValue(1, _text(""))
+    header.SetOrganizationValue(1, _text(""))
+    header.SetOriginatingSystem(_text(_SYSTEM))
+    header.SetAuthorisation(_text(""))
 
-    A solid where they make a closed shell with an inside and an outside, else the shell.
-    """
-    patches = triangle_patches(surface).quadrilaterals()
-    sewing = BRepBuilderAPI_Sewing(_SEWING * float(np.ptp(patches.points.reshape(-1, 3), axis=0).max()))
-    for face in _faces(patches):
-        sewing.Add(face)
-    sewing.Perform()
-    sewn = sewing.SewedShape()
-    if not (surface.orbifold.orientable and sewn.ShapeType() == TopAbs_SHELL and BRep_Tool.IsClosed_s(sewn)):
-        return sewn
-    solid = BRepBuilderAPI_MakeSolid(TopoDS.Shell(sewn)).Solid()
-    BRepLib.OrientClosedSolid_s(solid)
-    return solid
+
+def _sign_iges(writer: Any) -> None:
+    model = writer.Model()
+    section: IGESData_GlobalSection = model.GlobalSection()
+    date = _TIME.replace("-", "").replace("T", ".").replace(":", "")
+    signatures: tuple[tuple[Callable[[Any], None], str], ...] = (
+        (section.SetSendName, _NAME),
+        (section.SetReceiveName, _NAME),
+        (section.SetFileName, _NAME),
+        (section.SetSystemId, _SYSTEM),
+        (section.SetAuthorName, ""),
+        (section.SetCompanyName, ""),
+        (section.SetDate, date),
+        (section.SetLastChangeDate, date),
+    )
+    for set_value, value in signatures:
+        set_value(_text(value))
+    model.SetGlobalSection(section)
+
+
+def _text(value: str) -> Any:
+    return TCollection_HAsciiString(value)
 
 
 def _silence() -> None:
@@ -69,20 +92,6 @@ def _silence() -> None:
     messenger = Message.DefaultMessenger_s()
     for printer in list(messenger.Printers()):
         messenger.RemovePrinter(printer)
-
-
-def _faces(patches: QuadrilateralPatches) -> list[Any]:
-    return [_face(points, weights) for points, weights in zip(patches.points, patches.weights, strict=True)]
-
-
-def _face(points: Any, weights: Any) -> Any:
-    side = len(weights)
-    poles, numbers = Array2_gp_Pnt(1, side, 1, side), Array2_double(1, side, 1, side)
-    for i in range(side):
-        for j in range(side):
-            poles.SetValue(i + 1, j + 1, gp_Pnt(*(float(v) for v in points[i, j])))
-            numbers.SetValue(i + 1, j + 1, float(weights[i, j]))
-    return BRepBuilderAPI_MakeFace(Geom_BezierSurface(poles, numbers), 1e-12).Face()
 
 
 def _require(done: bool, what: str) -> None:
