@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import FitError, GeodesicTriangulation
+from orbiframe import FitError, GeodesicTriangulation, Locator, Points
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -57,13 +57,14 @@ def hull_bounds(domain: GeodesicTriangulation, knots: Floats) -> Floats:
     return np.take_along_axis(normal, order[..., None], axis=1)
 
 
-def reach(domain: GeodesicTriangulation, face: Ints, knots: Floats, bounds: Floats) -> Reach:
+def reach(locator: Locator, face: Ints, knots: Floats, bounds: Floats) -> Reach:
     """The triangles that overlap the cones of sets of knots (E, K, 3) in the frames of triangles `face` (E,).
 
-    Found by walking from triangle to triangle as long as they overlap: a convex set meets a connected set of triangles.
+    Found by walking from the triangle at the mean of the knots to its neighbours, as long as they overlap: a convex set
+    meets a connected set of triangles.
     """
-    geometry = domain.geometry
-    level = (np.arange(len(face)), face, np.tile(np.eye(3), (len(face), 1, 1)))
+    domain = locator.domain
+    level = _starts(locator, face, knots)
     found = [level]
     before = level
     while len(level[0]):
@@ -80,6 +81,16 @@ def reach(domain: GeodesicTriangulation, face: Ints, knots: Floats, bounds: Floa
     order = np.lexsort((element, triangle))
     first = np.searchsorted(triangle[order], np.arange(domain.face_count + 1))
     return Reach(first, element[order], np.ascontiguousarray(isometry[order]))
+
+
+def _starts(locator: Locator, face: Ints, knots: Floats) -> tuple[Ints, Ints, Floats]:
+    """Set, triangle at the mean of its knots, and the isometry from that triangle to the frame of the knots."""
+    domain = locator.domain
+    geometry = domain.geometry
+    mean = geometry.act(domain.placement[face], geometry.project(knots.sum(axis=1)))
+    order, triangle, columns = locator.locate(Points(domain.patch[face], mean), frames=True)
+    there = columns @ geometry.inverse(geometry.carry(mean[order])) @ domain.placement[face[order]]
+    return order, triangle, geometry.inverse(there)
 
 
 def _overlap(

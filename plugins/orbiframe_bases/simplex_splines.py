@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
 from typing import NamedTuple
@@ -29,6 +29,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 _KINDS = (1, 3, 6, 12)
+# Functions this small against the others are sums that cancel.
+_ZERO = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,9 +73,11 @@ class SimplexSplines(DifferentiableBasis):
 
     def __init__(self, domain: GeodesicTriangulation, degree: int, elements: Elements) -> None:
         self.orbifold, self.domain, self.degree = domain.orbifold, domain, degree
-        self.elements, self.size = elements, elements.size
-        self.smoothness = degree + 1 - most_coplanar(elements)
         self.weights: Floats | None = None
+        self.elements, self.size = elements, elements.size
+        self.elements = self._without_zeros()
+        self.size = self.elements.size
+        self.smoothness = degree + 1 - most_coplanar(elements)
         if degree % 2 == 1 and domain.geometry.curvature != 0:
             self.weights = self._nearest_to_one()
 
@@ -126,6 +130,18 @@ class SimplexSplines(DifferentiableBasis):
     def _place(self, points: Points) -> _Place:
         return _Place(*self.locator.locate(points, frames=True), (self.domain.geometry.curvature, self.degree))
 
+    def _without_zeros(self) -> Elements:
+        """The same without functions that are zero everywhere: sums whose parts cancel, told by quadrature points."""
+        matrix = self.design_matrix(quadrature(self.domain, self.degree + 2)[0])
+        height = abs(matrix).max(axis=0).toarray().ravel()
+        kept = height > _ZERO * height.max()
+        if kept.all():
+            return self.elements
+        del self._pattern
+        column = (np.cumsum(kept) - 1)[self.elements.column]
+        factor = self.elements.factor * kept[self.elements.column]
+        return replace(self.elements, column=np.maximum(column, 0), factor=factor, size=int(kept.sum()))
+
     def _nearest_to_one(self) -> Floats:
         """The coefficients of the function that is nearest to 1 in the mean square, by quadrature on the triangles."""
         points, weights = quadrature(self.domain, self.degree + 2)
@@ -137,7 +153,7 @@ class SimplexSplines(DifferentiableBasis):
         if not least > 0.05:
             raise FitError(
                 f"the function of the space that is nearest to 1 falls to {least:.3g}; the triangles are too large for "
-                f"degree {self.degree} in {self.domain.geometry.name}: take more of them (option size) or an even degree"
+                f"degree {self.degree} in {self.domain.geometry.name}: take more (option size) or an even degree"
             )
         return np.asarray(found)
 
@@ -152,7 +168,7 @@ class SimplexSplines(DifferentiableBasis):
 
     @cached_property
     def _reach(self) -> Reach:
-        return reach(self.domain, self.elements.face, self.elements.knots, self._bounds)
+        return reach(self.locator, self.elements.face, self.elements.knots, self._bounds)
 
     @cached_property
     def _steps(self) -> tuple[Floats, Floats, Floats]:
@@ -171,7 +187,7 @@ class SimplexSplines(DifferentiableBasis):
 
     @cached_property
     def _pattern(self) -> tuple[Ints, Ints, Ints]:
-        """The functions that matter on each triangle: start (F + 1,), columns, and the place of every output, (c, o)."""
+        """The functions that matter on each triangle: start (F + 1,), columns, and places of outputs, (c, o)."""
         first, element, _ = self._reach
         triangle = np.repeat(np.arange(self.domain.face_count), np.diff(first))
         key = triangle[:, None] * np.int64(self.size) + self.elements.column[element]
@@ -195,7 +211,10 @@ def most_coplanar(elements: Elements) -> int:
 
     A simplex spline of m knots is C^(m - q - 2) across a plane that holds q of them.
     """
-    return max(_most_in_a_plane(elements.knots[:, list(elements.program.states[o])]) for o in elements.program.outputs)
+    return max(
+        _most_in_a_plane(elements.knots[:, list(elements.program.states[o])])
+        for o in set(elements.program.outputs.tolist())
+    )
 
 
 def _most_in_a_plane(knots: Floats) -> int:
