@@ -13,6 +13,9 @@ def orbiframe_components() -> list[Component]:
         Component("command", "info", "orbiframe.cli.info:configure", "name the surface of a mesh and its defects"),
         Component("command", "convert", "orbiframe.cli.convert:configure", "write a mesh in another format"),
         Component(
+            "command", "group", "orbiframe.cli.group:configure", "describe, measure and draw a group from a word"
+        ),
+        Component(
             "command", "plugins", "orbiframe.cli.plugins:configure", "list the installed components or check one"
         ),
     ]

@@ -1,0 +1,122 @@
+"""orbiframe group: a closed surface from a gluing word, its group, its spectrum and its picture."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from orbiframe.cli.destination import require_folder
+from orbiframe.errors import UsageError
+from orbiframe.registry import Registry
+
+if TYPE_CHECKING:
+    from orbiframe.group import Group
+    from orbiframe.word import Word
+
+# The shape of a surface of each sign of the Euler characteristic that is meant by "regular".
+_REGULAR = {1: "finite", 0: "lattice", -1: "regular-polygon"}
+_GEOMETRY = {1: "s2", 0: "e2", -1: "h2"}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    add = parser.add_argument
+    add("word", metavar="WORD", help="how the sides of a polygon are glued, such as abABcdCD; capitals are inverses")
+    add("--polygon", metavar="NAME", default="regular", help="regular (the default), or the name of a group")
+    add("--systole", action="store_true", help="the shortest closed geodesic, and how many there are")
+    add("--spectrum", metavar="N", type=int, help="the N smallest eigenvalues of the Laplacian, with multiplicities")
+    add("--draw", metavar="FILE", type=Path, help="a picture of the polygon and its tiles, .svg or .png")
+    add("--json", action="store_true", help="print one JSON object")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace, registry: Registry) -> int:
+    """Describe the group, compute and draw what was asked for."""
+    from orbiframe.word import Word
+
+    if args.spectrum is not None and args.spectrum < 1:
+        raise UsageError(f"--spectrum {args.spectrum}: ask for at least 1 eigenvalue")
+    if args.draw is not None:
+        require_folder(args.draw)
+    word = Word.parse(args.word)
+    found = _described(word)
+    if args.systole or args.spectrum or args.draw:
+        found.update(_computed(args, _group(word, args.polygon, registry), registry))
+    print(json.dumps(found) if args.json else "\n".join(_lines(found)))
+    return 0
+
+
+def _group(word: Word, polygon: str, registry: Registry) -> Group:
+    sign = (word.euler_characteristic > 0) - (word.euler_characteristic < 0)
+    name = _REGULAR[sign] if polygon == "regular" else polygon
+    group: Group = registry.load("group", name)(registry.load("geometry", _GEOMETRY[sign])(), word)
+    return group
+
+
+def _described(word: Word) -> dict[str, Any]:
+    """What a word says without numbers."""
+    from orbiframe.presentation import Presentation
+    from orbiframe.word import text_of
+
+    deficit = 2 - word.euler_characteristic
+    one_vertex = len(word.vertex_cycles) == 1
+    return {
+        "word": str(word),
+        "surface": {
+            "name": word.surface,
+            "euler_characteristic": word.euler_characteristic,
+            "orientable": word.orientable,
+            "genus": deficit // 2 if word.orientable else deficit,
+        },
+        "vertices": len(word.vertex_cycles),
+        "relations": ["".join(map(text_of, relation)) for relation in word.letter_relations],
+        "homology": Presentation.of(word if one_vertex else word.standard).homology_text,
+    }
+
+
+def _computed(args: argparse.Namespace, group: Group, registry: Registry) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    if args.systole:
+        from orbiframe.closed_geodesics import systole
+
+        shortest = systole(group)
+        found["systole"] = {"length": shortest.length, "multiplicity": shortest.multiplicity}
+    if args.spectrum:
+        from orbiframe.cell_triangulation import cell_triangulation
+        from orbiframe.spectrum import laplace_spectrum
+
+        bernstein = registry.load("basis", "bernstein")
+        values = laplace_spectrum(
+            cell_triangulation(group),
+            lambda domain, degree: bernstein(domain.orbifold, domain, degree=degree),
+            args.spectrum,
+        )
+        found["spectrum"] = [{"value": e.value, "multiplicity": e.multiplicity, "error": e.error} for e in values]
+    if args.draw:
+        from orbiframe.drawing import draw_group
+
+        draw_group(group, args.draw)
+        found["picture"] = str(args.draw)
+    return found
+
+
+def _lines(found: dict[str, Any]) -> list[str]:
+    """The same in words."""
+    surface = found["surface"]
+    rows = [
+        ("word", found["word"]),
+        ("surface", f"{surface['name']}, Euler characteristic {surface['euler_characteristic']}"),
+        ("relations", ", ".join(f"{relation} = 1" for relation in found["relations"])),
+        ("homology", found["homology"]),
+    ]
+    if shortest := found.get("systole"):
+        rows.append(("systole", f"{shortest['length']:.12g}, {shortest['multiplicity']} closed geodesics"))
+    rows += [
+        ("spectrum" if k == 0 else "", f"{e['value']:.12g} ({e['multiplicity']})")
+        for k, e in enumerate(found.get("spectrum", []))
+    ]
+    if "picture" in found:
+        rows.append(("picture", found["picture"]))
+    return [f"{name:<10}{text}" for name, text in rows]
