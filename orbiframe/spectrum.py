@@ -39,7 +39,7 @@ def laplace_spectrum(
 
     By Galerkin's method, so all values are upper bounds: in the spaces `family(domain, degree)` of continuous
     polynomials of the even degrees 8 and 10, which contain the constants, on a triangulation refined until it resolves
-    the waves. The error of a value falls like h^(2 degree); the difference of the two degrees bounds it. Values that are
+    the waves. The error of a value falls like h^(2 degree), and the difference of the two degrees bounds it. Values
     nearer to one another than ten such differences count as one. Raises FitError for a count below 1.
     """
     if count < 1:
