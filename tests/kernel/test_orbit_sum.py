@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import reference_surfaces as surfaces
 from hypothesis import given, settings, strategies as st
+from third_derivatives import error_of_third_derivatives
 
 from orbiframe.atlas import Points
 from orbiframe.basis import OrbitSumBasis
@@ -26,7 +27,7 @@ class Polynomial(OrbitSumBasis):
 
     def profile(self, t):
         u = np.maximum(1 - t, 0)
-        return u**6, -6 * u**5, 30 * u**4
+        return u**6, -6 * u**5, 30 * u**4, -120 * u**3
 
 
 class Exponential(OrbitSumBasis):
@@ -36,7 +37,7 @@ class Exponential(OrbitSumBasis):
 
     def profile(self, t):
         f = np.where(t < 1, np.exp(-80 * t), 0)
-        return f, -80 * f, 6400 * f
+        return f, -80 * f, 6400 * f, -512000 * f
 
 
 def blocks_as_dense(pairs: list[Pairs], shape: tuple[int, int]) -> np.ndarray:
@@ -163,9 +164,48 @@ def test_jets_are_differences_along_geodesics(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
+def test_third_derivatives_are_differences_of_the_hessian(name: str) -> None:
+    basis, points = some_basis(name)
+    assert error_of_third_derivatives(basis, points, 1e-3).max() < 1e-5
+
+
+def test_third_derivatives_of_theta_functions() -> None:
+    """d^3/dx^3, d^3/dx^2 dy, ... of products of theta functions over their sum, by mpmath."""
+    orbifold, s = surfaces.torus(), np.sqrt(0.2)
+    centres = Points(np.zeros(2, dtype=int), np.array([[1, 0, 0], [1, 0.3, -0.2]]))
+    x, y = 0.1, 0.45
+    basis = Exponential(orbifold, centres, np.full(2, 40 * s**2))
+    found = basis.jet_matrices(Points(np.zeros(1, dtype=int), np.array([[1, x, y]])), 3)
+
+    def theta(t: mpmath.mpf) -> mpmath.mpf:
+        return mpmath.jtheta(3, mpmath.pi * t, mpmath.exp(-((mpmath.pi * s) ** 2)))
+
+    def share(a: mpmath.mpf, b: mpmath.mpf) -> mpmath.mpf:
+        sums = [theta(a - m[1]) * theta(b - m[2]) for m in centres.x]
+        return sums[0] / sum(sums)
+
+    with mpmath.workdps(30):
+        exact = [float(mpmath.diff(share, (x, y), order)) for order in ((3, 0), (2, 1), (1, 2), (2, 1), (1, 2), (0, 3))]
+    np.testing.assert_allclose([m.toarray()[0, 0] for m in found[6:]], exact, rtol=1e-8, atol=1e-8)
+
+
+def test_a_profile_without_a_third_derivative_has_jets_of_order_two() -> None:
+    class Short(Polynomial):
+        def profile(self, t):
+            return super().profile(t)[:3]
+
+    full, points = some_basis("octagon")
+    short = Short(full.orbifold, full.centres, full.support)
+    for a, b in zip(short.jet_matrices(points, 2), full.jet_matrices(points, 2), strict=True):
+        np.testing.assert_array_equal(a.toarray(), b.toarray())
+    with pytest.raises(FitError, match="Short"):
+        short.jet_matrices(points, 3)
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_functions_add_up_to_one_and_their_derivatives_to_nothing(name: str) -> None:
     basis, points = some_basis(name)
-    total, *rest = (m.sum(axis=1) for m in basis.jet_matrices(points, 2))
+    total, *rest = (m.sum(axis=1) for m in basis.jet_matrices(points, 3))
     np.testing.assert_allclose(total, 1, atol=1e-14)
     assert max(np.abs(part).max() for part in rest) < 1e-10
 
