@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
+from itertools import chain
 from pathlib import Path
 
 from orbiframe import FormatError
@@ -15,12 +16,15 @@ PICTURES = (b"RelativeFilename", b"FileName", b"Filename")
 
 
 def require_own_files(path: Path) -> None:
-    """Raise FormatError for glTF that names files outside of its own folder, and for FBX that names pictures."""
+    """Raise FormatError for a file that names others, but for the buffers of a .gltf, which are half of that format.
+
+    Those must be files beside it, and no links.
+    """
     content, suffix = path.read_bytes(), path.suffix.lower()
     if suffix == ".gltf":
         _require_near(path, content)
     if suffix == ".glb":
-        _require_near(path, _text_of(path, content))
+        _require_none(path, _text_of(path, content))
     if suffix == ".fbx" and any(name in content for name in PICTURES):
         raise FormatError(f"{path}: the file names pictures, which Open3D would open; save it without them")
 
@@ -42,11 +46,25 @@ def _text_of(path: Path, content: bytes) -> bytes:
 
 
 def _require_near(path: Path, text: bytes) -> None:
+    buffers, images = _names(path, text)
+    for name in buffers:
+        if Path(name).name != name or ":" in name or "%" in name or (path.parent / name).is_symlink():
+            raise FormatError(f"{path}: the file names {name[:80]!r}; only buffers in its own folder are opened")
+    for name in images:
+        raise FormatError(f"{path}: the file names the picture {name[:80]!r}, which is not opened; save it as .glb")
+
+
+def _require_none(path: Path, text: bytes) -> None:
+    for name in chain(*_names(path, text)):
+        raise FormatError(f"{path}: the file names {name[:80]!r}, which is not opened; save it with all in one file")
+
+
+def _names(path: Path, text: bytes) -> tuple[list[str], list[str]]:
+    """The files that a glTF names as buffers and as pictures."""
     try:
         tree = json.loads(text)
-        names = [part["uri"] for key in ("buffers", "images") for part in tree.get(key, []) if "uri" in part]
+        found = [[str(p["uri"]) for p in tree.get(key, []) if "uri" in p] for key in ("buffers", "images")]
     except (ValueError, TypeError, AttributeError, RecursionError) as error:
         raise FormatError(f"{path}: this is no glTF: {error}") from error
-    for name in map(str, names):
-        if not name.startswith("data:") and (Path(name).name != name or ":" in name or "%" in name):
-            raise FormatError(f"{path}: the file names {name[:80]!r}; only files in its own folder are opened")
+    buffers, images = ([name for name in names if not name.startswith("data:")] for names in found)
+    return buffers, images

@@ -55,6 +55,14 @@ def test_a_gltf_opens_no_file_elsewhere(tmp_path, name):
         read(path)
 
 
+def test_a_buffer_of_a_gltf_is_no_link(tmp_path):
+    (tmp_path / "points.bin").symlink_to("/etc/passwd")
+    path = tmp_path / "a.gltf"
+    path.write_text(json.dumps({"buffers": [{"uri": "points.bin", "byteLength": 4}]}))
+    with pytest.raises(FormatError, match="own folder"):
+        require_own_files(path)
+
+
 @needs_open3d
 def test_a_ply_that_crashes_open3d_is_an_error(tmp_path):
     path = tmp_path / "a.ply"
@@ -88,8 +96,10 @@ OUTSIDE = {"asset": {"version": "2.0"}, "buffers": [{"uri": "../points.bin", "by
 @pytest.mark.parametrize(
     ("name", "content", "said"),
     [
-        ("a.glb", glb(OUTSIDE), "own folder"),
-        ("a.glb", glb({"images": [{"uri": "/etc/passwd"}]}), "own folder"),
+        ("a.glb", glb(OUTSIDE), "not opened"),
+        ("a.glb", glb({"images": [{"uri": "/etc/passwd"}]}), "not opened"),
+        ("a.glb", glb({"images": [{"uri": "beside.png"}]}), "not opened"),
+        ("a.gltf", b'{"images": [{"uri": "beside.png"}]}', "picture.*not opened"),
         ("a.glb", glb({}, size=2**32 - 1), "byte 8.*cut short"),
         ("a.glb", glb({}, length=2**32 - 16), "byte 12"),
         ("a.glb", glb({}, version=9), "byte 4"),
