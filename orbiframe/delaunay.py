@@ -11,7 +11,7 @@ from orbiframe.atlas import Points
 from orbiframe.cells import Cells, cells_of
 from orbiframe.errors import MapError
 from orbiframe.flips import legalise, push_all
-from orbiframe.frames import centred
+from orbiframe.frames import centred, polished
 from orbiframe.geodesic_triangulation import GeodesicTriangulation
 from orbiframe.insertion import insert
 from orbiframe.orbifold import Orbifold
@@ -117,7 +117,7 @@ def _result(cells: Cells, orbifold: Orbifold, sites: Ints) -> SiteTriangulation:
     twin = cells.twin[halfedge]
     twin = 3 * number[twin // 3] + twin % 3
     same, patch, placement = cells.same[halfedge], cells.patch[alive], cells.placement[alive]
-    triangulation = centred(orbifold, cells.corners[alive], twin, same, patch, placement)
+    triangulation = polished(centred(orbifold, cells.corners[alive], twin, same, patch, placement))
     return SiteTriangulation(triangulation, _by_first_corner(cells.vertex[halfedge], len(cells.seat))[sites])
 
 

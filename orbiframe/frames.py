@@ -16,6 +16,13 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
+# An error of the gluings that calls for better corners, and the farthest that those may be from what they replace.
+_GOOD = 1e-12
+_SAME_LIFT = 1e-3
+
+# With more triangles none is large.
+_FEW = 2000
+
 
 def centred(
     orbifold: Orbifold, corners: Floats, twin: Ints, same: Bools, patch: Ints, placement: Floats
@@ -29,6 +36,35 @@ def centred(
     patch, place = _attached(orbifold.atlas, patch, place)
     gluing = edge_gluings(orbifold.geometry.curvature, x, twin, same)
     return GeodesicTriangulation(orbifold, x, twin, same, gluing, patch, place)
+
+
+def polished(triangulation: GeodesicTriangulation) -> GeodesicTriangulation:
+    """Large triangles of H^2 with corners found anew: as lifts of the vertices by products of few transitions.
+
+    Flips between large triangles lose digits, though far too few to tell one lift of a vertex from another. Without
+    change where the digits are there.
+    """
+    t, geometry = triangulation, triangulation.geometry
+    if geometry.curvature >= 0 or t.face_count > _FEW or t.gluing_defect < _GOOD:
+        return t
+    near = geometry.settle(geometry.act(t.placement[:, None], t.corners))
+    face, corner = np.divmod(t.vertex_corner, 3)
+    site = near[face, corner]
+    reach = geometry.distance(geometry.origin, near).max(axis=1)
+    copies = t.orbifold.copies(t.patch, reach + geometry.distance(geometry.origin, site).max() + 0.1)
+    corners = near.copy()
+    for c in range(3):
+        vertex = t.vertex[copies.base, c]
+        here = np.flatnonzero(copies.patch == t.patch[face][vertex])
+        base, lift = copies.base[here], geometry.act(copies.isometry[here], site[vertex[here]])
+        apart = geometry.distance(lift, near[base, c])
+        order = np.lexsort((apart, base))
+        first = order[np.unique(base[order], return_index=True)[1]]
+        first = first[apart[first] < _SAME_LIFT]
+        corners[base[first], c] = lift[first]
+    mirror = np.tile(np.eye(3), (t.face_count, 1, 1))
+    mirror[:, 2, 2] = geometry.parity(t.placement)
+    return centred(t.orbifold, geometry.settle(corners) @ mirror, t.twin, t.same, t.patch, mirror)
 
 
 def edge_gluings(curvature: int, corners: Floats, twin: Ints, same: Bools) -> Floats:

@@ -43,7 +43,10 @@ def locate_in(cells: Cells, triangulation: GeodesicTriangulation, points: Points
     x = np.ascontiguousarray(points.x, dtype=np.float64)
     found = Located(np.empty(len(x), dtype=np.intp), np.empty((len(x), 3)))
     patch = np.asarray(points.patch, dtype=np.intp)
-    lost = _locate(cells, by_place(patch, x), patch, x, face, route, found.face, found.x)
+    finite = np.isfinite(x).all(axis=1)
+    lost = int(np.argmin(finite)) if not finite.all() else -1
+    if lost < 0:
+        lost = _locate(cells, by_place(patch, x), patch, x, face, route, found.face, found.x)
     if lost >= 0:
         raise GeometryError(
             f"point {lost}, {x[lost]} in patch {patch[lost]}, was not found in any triangle; give finite points of X "
