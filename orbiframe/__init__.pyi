@@ -12,6 +12,12 @@ from orbiframe.bernstein import (
 )
 from orbiframe.bisection import bisected as bisected
 from orbiframe.cell_triangulation import cell_triangulation as cell_triangulation
+from orbiframe.closed_geodesics import (
+    LengthSpectrum as LengthSpectrum,
+    Systole as Systole,
+    length_spectrum as length_spectrum,
+    systole as systole,
+)
 from orbiframe.config import Config as Config
 from orbiframe.confinement import confined_read as confined_read, confined_write as confined_write
 from orbiframe.crowding import crowding_of as crowding_of
@@ -20,8 +26,10 @@ from orbiframe.delaunay import (
     delaunay as delaunay,
     delaunay_of_vertices as delaunay_of_vertices,
 )
+from orbiframe.dirichlet import DirichletCell as DirichletCell, dirichlet_cell as dirichlet_cell
 from orbiframe.domains import domain_for as domain_for
 from orbiframe.element_basis import ElementBasis as ElementBasis
+from orbiframe.elements import Elements as Elements, elements_within as elements_within
 from orbiframe.errors import (
     ConfigError as ConfigError,
     FitError as FitError,

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from orbiframe.atlas import Atlas
 from orbiframe.errors import GeometryError
 from orbiframe.geometry import Geometry
+from orbiframe.spin import Spin
 from orbiframe.word import Word, parse_letters
 
 Floats = NDArray[np.float64]
@@ -44,15 +45,20 @@ class Group(ABC):
     def generator(self, label: int) -> Floats:
         """The isometry that a label of the word stands for, (3, 3)."""
 
+    def pairings(self) -> Spin:
+        """The transitions of `atlas()` without the identity, as pairs of complex numbers, (n,)."""
+        return Spin.of_matrix(self.geometry.curvature, self.atlas().isometry[1:])
+
     def element(self, letters: str | tuple[int, ...]) -> Floats:
         """The isometry of a word in the generators, (3, 3), upper case for inverses; "" is the identity.
 
         Raises GeometryError for a letter that the group does not have.
         """
-        product = np.eye(3)
+        k = self.geometry.curvature
+        product = Spin.of_matrix(k, np.eye(3))
         for letter in parse_letters(letters) if isinstance(letters, str) else letters:
             if letter not in self.word.letters and -letter not in self.word.letters:
                 raise GeometryError(f"letter {letter} is no generator; the generators are the letters of '{self.word}'")
-            g = self.generator(abs(letter))
-            product = product @ (g if letter > 0 else self.geometry.inverse(g))
-        return product
+            g = Spin.of_matrix(k, self.generator(abs(letter)))
+            product = product @ (g if letter > 0 else g.inverse)
+        return product.matrix

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial import cKDTree
 
 from orbiframe.atlas import Atlas
+from orbiframe.dirichlet import DirichletCell, dirichlet_cell
+from orbiframe.elements import cell_elements
 from orbiframe.errors import GeometryError
 from orbiframe.group import Group
 from orbiframe.polygon import FundamentalPolygon
+from orbiframe.spin import Spin
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -44,17 +48,26 @@ class PolygonGroup(Group):
         """The pairing of `word.generator_side(label)`."""
         return np.asarray(self.polygon.pairings[self.word.generator_side(label)])
 
+    def pairings(self) -> Spin:
+        """The side pairings from the flags in the middle of the sides, which lie half as far as their images."""
+        k, size = self.geometry.curvature, len(self.word)
+        flags = Spin.of_matrix(k, self.polygon.side_flags)
+        parallel = np.array([self.word.reverses(side) for side in range(size)])
+        swap = Spin.rotation(k, np.where(parallel, 0.0, np.pi), parallel)
+        return flags @ swap @ flags[np.array(self.word.mate)].inverse
+
+    @cached_property
+    def dirichlet_cell(self) -> DirichletCell:
+        """The points that are nearer to the origin than to its images; the polygon itself where it is regular."""
+        return dirichlet_cell(self)
+
     def tiles(self, radius: float) -> Floats:
-        """Every g whose tile meets the disc, found by crossing sides from tile to tile."""
+        """Every g whose tile meets the disc: of those with a centre near enough, see `elements_within`."""
         slack = radius + 1e-9 * (1 + radius)
-        found = frontier = np.eye(3)[None]
-        while len(frontier):
-            beyond = self._neighbours(frontier)
-            # gF meets the disc about the origin if and only if F meets the disc about the preimage of the origin.
-            preimages = self.geometry.inverse(beyond)[..., 0]
-            frontier = self._new_tiles(found, beyond[self.polygon.meets_disc(preimages, slack)])
-            found = np.concatenate([found, frontier])
-        return found[np.argsort(self._centre_distance(found), kind="stable")]
+        found = cell_elements(self.dirichlet_cell, self.area, slack + self.polygon.circumradius).spin()
+        # gF meets the disc about the origin if and only if F meets the disc about the preimage of the origin.
+        near = found[self.polygon.meets_disc(found.inverse.place, slack)].matrix
+        return near[np.argsort(self.geometry.distance(self.geometry.origin, near[..., 0]), kind="stable")]
 
     def reduce(self, x: ArrayLike) -> tuple[Floats, Floats]:
         """Cross the side that a point is farthest beyond until it is in F.
@@ -79,22 +92,3 @@ class PolygonGroup(Group):
             f"point {outside[0]}, {points.reshape(-1, 3)[outside[0]]}, does not reach the polygon of '{self.word}' in "
             f"{_MOST_CROSSINGS} side crossings; give finite points within a distance of about 15 from the origin"
         )
-
-    def _neighbours(self, g: Floats) -> Floats:
-        """The tiles on the other side of every side of every tile."""
-        return self.geometry.nearest_isometry((g[:, None] @ self.polygon.pairings).reshape(-1, 3, 3))
-
-    def _new_tiles(self, found: Floats, candidates: Floats) -> Floats:
-        """The candidates that are not among the found, each once.
-
-        The group acts freely and translates of the disc inscribed in F are disjoint: two elements that take the origin
-        to places nearer than the inradius are one.
-        """
-        centres = np.concatenate([found[..., 0], candidates[..., 0]])
-        pairs = cKDTree(centres).query_pairs(self.polygon.inradius, output_type="ndarray")
-        repeated = np.zeros(len(centres), dtype=bool)
-        repeated[pairs.max(axis=1)] = True
-        return candidates[~repeated[len(found) :]]
-
-    def _centre_distance(self, g: Floats) -> Floats:
-        return self.geometry.distance(self.geometry.origin, g[..., 0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Complexes = NDArray[np.clongdouble]
+
+_HALF_TURN = np.diag([-1.0, 1.0, -1.0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,13 +49,24 @@ class Spin:
 
     @classmethod
     def of_matrix(cls, curvature: int, g: ArrayLike) -> Spin:
-        """Isometries given as matrices (..., 3, 3); in S^2 none that takes the origin to its antipode."""
+        """Isometries given as matrices (..., 3, 3)."""
         matrix = np.asarray(g, dtype=np.longdouble)
+        if curvature > 0 and (far := matrix[..., 0, 0] < 0).any():
+            # Half a turn about (0, 1, 0), 1 / z in the conformal model, brings the origin to the near half of S^2.
+            near = cls.of_matrix(1, np.where(far[..., None, None], _HALF_TURN @ matrix, matrix))
+            turned = cls(1, np.where(far, 0, 1).astype(np.clongdouble), np.where(far, 1j, 0), np.zeros_like(far))
+            return turned @ near
         move = cls.translation(curvature, matrix[..., :, 0])
         # What is left, a rotation or reflection about the origin, shows where the x1-axis and the x2-axis go.
         rest = move.inverse.matrix.astype(np.longdouble) @ matrix
         reverses = rest[..., 1, 1] * rest[..., 2, 2] < rest[..., 1, 2] * rest[..., 2, 1]
         return move @ cls.rotation(curvature, np.arctan2(rest[..., 2, 1], rest[..., 1, 1]), reverses)
+
+    @classmethod
+    def joined(cls, parts: Sequence[Spin]) -> Spin:
+        """Isometries of one plane in one array, (n,), one part (m,) after the other."""
+        a, b, reverses = (np.concatenate([getattr(part, name) for part in parts]) for name in ("a", "b", "reverses"))
+        return cls(parts[0].curvature, a, b, reverses)
 
     def __matmul__(self, other: Spin) -> Spin:
         """The other isometry first, then this one; leading axes broadcast."""
@@ -75,6 +89,13 @@ class Spin:
     def direction(self) -> NDArray[np.longdouble]:
         """The angle (...) at the origin of the geodesic from there to its image; 0 where it stays."""
         return np.asarray(np.angle(self.a * self.b))
+
+    @property
+    def place(self) -> Floats:
+        """The image of the origin, (..., 3)."""
+        turned = 2 * self.a * self.b
+        height = np.abs(self.a) ** 2 - self.curvature * np.abs(self.b) ** 2
+        return np.stack([height, turned.real, turned.imag], axis=-1).astype(np.float64)
 
     @property
     def matrix(self) -> Floats:
