@@ -90,12 +90,12 @@ def corner_clouds(domain: GeodesicTriangulation, degree: int, radius: float) -> 
     turned = (np.einsum("...i,...i->...", p, np.cross(q, r)) <= 0).any(axis=(1, 2, 3))
     if turned.any():
         raise FitError(
-            f"the knots of {turned.sum()} triangles turn over, the first is triangle {turned.argmax()}; lower the option "
-            "radius or take a triangulation with less flat triangles"
+            f"the knots of {turned.sum()} triangles turn over, the first is triangle {turned.argmax()}; lower the "
+            "option radius or take a triangulation with less flat triangles"
         )
     return clouds
 
 
 def _corner_clouds(domain: GeodesicTriangulation, degree: int, radius: float, turn: float) -> Floats:
     clouds = knot_clouds(domain, degree, radius, turn)[domain.vertex]
-    return np.einsum("fcij,fckj->fcki", domain.corner_frame, clouds)
+    return np.asarray(np.einsum("fcij,fckj->fcki", domain.corner_frame, clouds))

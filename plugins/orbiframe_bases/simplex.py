@@ -8,21 +8,21 @@ from itertools import combinations, permutations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from orbiframe import GeodesicTriangulation, Orbifold, Triangulation, UsageError, domain_for
 from orbiframe_bases.ear_clipping import clip_ears
 from orbiframe_bases.knot_clouds import flatness, knot_clouds
 from orbiframe_bases.simplex_program import subset_program
 from orbiframe_bases.simplex_reach import same_rows
 from orbiframe_bases.simplex_splines import Elements, SimplexSplines
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-
-from orbiframe import GeodesicTriangulation, Orbifold, Triangulation, UsageError, domain_for
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 # Vertices that are looked at for the best displacement of knots, and displacements that are tried.
-_WORK, _MOST_TURNS = 2000, 24
+_WORK, _MOST_TURNS = 1000, 8
 # How many functions there are about, for each vertex, edge and triangle: V, at most E, and about 4 V.
 _UNKNOWNS = {1: (1, 0, 0), 2: (0, 1, 0), 3: (1, 1, 0)}
 
@@ -202,12 +202,11 @@ class _Lifts:
 def _triple_functions(stars: Stars) -> Elements:
     """I' = {v, w} an edge, t' the triangles that fill its link, I a triple."""
     polygon, spoke, triangle = _edge_links(stars)
-    v, w = stars.vertex[spoke], stars.far[spoke]
+    v = stars.vertex[spoke]
     b = _Lifts(polygon.vertex[triangle], polygon.isometry[triangle], polygon.place[triangle])
     ends = np.stack([stars.knots[v], stars.place[spoke]], axis=1)
     knots = np.concatenate([b.place, ends], axis=1)
     column = _triple_numbers(stars, spoke, b)
-    del w
     return _elements(stars.home[v], knots, column, int(column.max()) + 1)
 
 

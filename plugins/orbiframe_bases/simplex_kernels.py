@@ -24,7 +24,7 @@ def _dot(row, columns, k):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _reaches(bounds, columns):  # type: ignore[no-untyped-def]
-    for b in range(len(bounds)):
+    for b in range(len(bounds)):  # noqa: SIM110
         if _dot(bounds[b], columns, 0) < -1e-9:
             return False
     return True
@@ -33,7 +33,7 @@ def _reaches(bounds, columns):  # type: ignore[no-untyped-def]
 @njit(cache=True)
 def _spanned(rows, first, columns):  # type: ignore[no-untyped-def]
     """Whether three knots span the place beside the point; column 3 holds it."""
-    for t in range(first, first + 3):
+    for t in range(first, first + 3):  # noqa: SIM110
         if _dot(rows[t], columns, 3) <= 0:
             return False
     return True
@@ -144,8 +144,8 @@ def _emit(element, family, s, output, here, jets, entries, shape, product, out):
 def fill_columns(place, reach, elements, program, family, row_start, slots, values):  # type: ignore[no-untyped-def]
     """The rows of design matrices: all functions that may be nonzero on the triangle of each point.
 
-    place: number, triangle (n,), columns (n, 3, 3) (point and frame) of each point and (curvature, degree); reach: `Reach` as arrays; elements:
-    bounds, rows and heights; program: start, child, orders, outputs; family: factor (E, outputs), and rows of linear
+    place: number, triangle (n,), columns (n, 3, 3) (point and frame) of each point and (curvature, degree); reach:
+    `Reach` as arrays; elements: bounds, rows and heights; program: start, child, orders, outputs; family: factor (E, outputs), and rows of linear
     functions (E, outputs, 3) or (0, 0, 3); slots: where the outputs of a candidate stand in its row; values: (kinds,
     nonzeros), zero before.
     """
@@ -213,4 +213,5 @@ def simplex_splines(program, rows, height, columns, values):  # type: ignore[no-
         _beside(here)
         _run((start, child, orders), rows, height, here, entries, jets, live)
         for o in range(len(outputs)):
-            values[n, o] = jets[outputs[o]] if live[outputs[o]] else 0.0
+            for e in range(entries):
+                values[n, o, e] = jets[outputs[o], e] if live[outputs[o]] else 0.0

@@ -40,8 +40,8 @@ def hull_bounds(domain: GeodesicTriangulation, knots: Floats) -> Floats:
     heights = np.einsum("ei,eki->ek", mean * [1.0, geometry.curvature, geometry.curvature], knots)
     if not (heights > 1e-6).all():
         raise FitError(
-            f"the knots of simplex spline {np.argwhere(~(heights > 1e-6))[0, 0]} lie in no half-space; the triangles are "
-            "too large for the sphere: take more of them (option size)"
+            f"the knots of simplex spline {np.argwhere(~(heights > 1e-6))[0, 0]} lie in no half-space; the "
+            "triangles are too large for the sphere: take more of them (option size)"
         )
     first, second = np.array(list(combinations(range(knots.shape[1]), 2))).T
     p, q = knots[:, first], knots[:, second]
@@ -75,7 +75,7 @@ def reach(locator: Locator, face: Ints, knots: Floats, bounds: Floats) -> Reach:
         overlap = _overlap(domain, beyond, isometry, knots, bounds, element)
         fresh = (element[overlap], beyond[overlap], isometry[overlap])
         new = _unseen(domain, (before, level), fresh)
-        before, level = level, tuple(part[new] for part in fresh)
+        before, level = level, (fresh[0][new], fresh[1][new], fresh[2][new])
         found.append(level)
     element, triangle, isometry = (np.concatenate(parts) for parts in zip(*found, strict=True))
     order = np.lexsort((element, triangle))
@@ -105,7 +105,7 @@ def _overlap(
     sides = np.cross(np.roll(corners, -1, axis=1), np.roll(corners, -2, axis=1))
     sides *= np.sign(np.linalg.det(corners))[:, None, None]
     beyond = (np.einsum("nsi,nki->nsk", sides, knots[element]).max(axis=2) <= _NARROW).any(axis=1)
-    return ~outside & ~beyond
+    return np.asarray(~outside & ~beyond)
 
 
 def _unseen(

@@ -111,7 +111,7 @@ class SimplexSplines(DifferentiableBasis):
         both = self._sums(place, np.column_stack([coefficients, self.weights]), order)
         jets, total = np.ascontiguousarray(both[..., :-1]), both[..., -1]
         width = np.full(len(place.face), jets.shape[2])
-        return divide_jets(jets.reshape(len(jets), -1), total, width).reshape(jets.shape)
+        return np.asarray(divide_jets(jets.reshape(len(jets), -1), total, width).reshape(jets.shape))
 
     def _sums(self, place: _Place, coefficients: Floats, order: int) -> Floats:
         values = np.zeros((_KINDS[order], len(place.face), coefficients.shape[1]))
