@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array
 
 from orbiframe.bernstein import coefficient_count, symmetric_power
@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
-_AT_ONCE = 256  # triangles whose dense forms are in memory together: few enough for the cache
+_AT_ONCE = 1 << 18  # entries of dense forms that are in memory together: few enough for the cache
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,10 +93,10 @@ class Unknowns:
         kinds, kind = np.unique(rows, axis=0, return_inverse=True)
         order = np.argsort(self.numbers, axis=1, kind="stable")
         index = np.int32 if faces * max(int(rows.sum()), self.size) < 2**31 else np.int64
-        data = np.empty((faces, int(rows.sum())))
+        data, at_once = np.empty((faces, int(rows.sum()))), max(_AT_ONCE // rows.size, 1)
         column = np.empty(data.shape, dtype=index)
-        for begin in range(0, faces, _AT_ONCE):
-            part = slice(begin, min(begin + _AT_ONCE, faces))
+        for begin in range(0, faces, at_once):
+            part = slice(begin, min(begin + at_once, faces))
             forms = nets(part).reshape(-1, *rows.shape)
             _fill_rows(forms, kinds, kind, order[part], self.numbers[part], data[part], column[part])
         start = np.concatenate([[0], np.cumsum(np.tile(rows.sum(axis=1), faces))]).astype(index)
@@ -167,15 +167,14 @@ class VertexJets:
         return symmetric_power(self._to_reference[faces] @ np.swapaxes(rotated, 2, 3), self.order)
 
 
-def tangent_points(domain: GeodesicTriangulation, corner: int, vectors: Floats) -> Floats:
-    """Vectors seen from the vertex of a corner: in its frame at the origin, on the plane x0 = 1, (F, m, 2).
+def tangent_points(domain: GeodesicTriangulation, around: Floats) -> Floats:
+    """Vectors seen from the vertices of corners: in their frames at the origin, on the plane x0 = 1, (F, 3, m, 2).
 
-    vectors: (F, m, 3), in the frames of the triangles of the domain.
+    around: (F, 3, m, 3), m vectors for every corner, in the frames of the triangles.
     """
     geometry, reference = domain.geometry, domain.corners.reshape(-1, 3)[domain.vertex_corner]
-    to_vertex = geometry.inverse(geometry.carry(reference))[domain.vertex[:, corner]]
-    move = to_vertex @ geometry.inverse(domain.corner_frame[:, corner])
-    seen = vectors @ np.swapaxes(move, 1, 2)
+    to_vertex = geometry.inverse(geometry.carry(reference))[domain.vertex]
+    seen = around @ np.swapaxes(to_vertex @ geometry.inverse(domain.corner_frame), 2, 3)
     return np.asarray(seen[..., 1:] / seen[..., :1])
 
 
@@ -199,26 +198,34 @@ def enclosing_triangles(domain: GeodesicTriangulation, around: Floats, turns: in
     moment, seen = _moments(domain, around)
     root = _roots(moment)
     vertex = np.repeat(domain.vertex.ravel(), around.shape[2])
-    order = np.argsort(vertex, kind="stable")
-    flat = np.einsum("nij,nj->in", np.linalg.inv(root)[vertex[order]], seen.reshape(-1, 2)[order])
-    first = np.searchsorted(vertex[order], np.arange(domain.vertex_count))
-    size, angle = np.full(domain.vertex_count, np.inf), np.zeros(domain.vertex_count)
-    for turn in np.arange(turns) * (2 * np.pi / 3 / turns):
-        beyond = [np.maximum.reduceat(side @ flat, first) for side in -2 * _regular(turn).T]
-        needed = np.maximum.reduce(beyond)
-        better = needed < size - 1e-12
-        size[better], angle[better] = needed[better], turn
-    return _on_tangent_planes(domain, size[:, None, None] * root @ np.moveaxis(_regular(angle), -1, 0))
+    flat = np.einsum("nij,nj->ni", np.linalg.inv(root)[vertex], seen.reshape(-1, 2))
+    angles = np.arange(turns) * (2 * np.pi / 3 / turns)
+    sides = -2 * np.moveaxis(_regular(angles), 0, -1)
+    reach = np.zeros((domain.vertex_count, 3 * turns))
+    _reach(vertex, flat, sides.reshape(-1, 2), reach)
+    needed = reach.reshape(-1, 3, turns).max(axis=1)
+    # The first of those that are equally small up to rounding.
+    best = np.argmax(needed <= needed.min(axis=1, keepdims=True) + 1e-12, axis=1)
+    size = needed[np.arange(len(best)), best, None, None]
+    return _on_tangent_planes(domain, size * root @ np.moveaxis(_regular(angles[best]), -1, 0))
+
+
+@njit(cache=True)
+def _reach(vertex, points, directions, reach):  # type: ignore[no-untyped-def]
+    """How far the points of every vertex reach along directions: reach (V, k), the largest products, at least 0."""
+    for n in range(len(vertex)):
+        x, y, own = points[n, 0], points[n, 1], reach[vertex[n]]
+        for k in range(len(directions)):
+            own[k] = max(own[k], directions[k, 0] * x + directions[k, 1] * y)
 
 
 def _moments(domain: GeodesicTriangulation, around: Floats) -> tuple[Floats, Floats]:
     """The mean of p p^T over the star of every vertex, (V, 2, 2), and the points p, (F, 3, m, 2)."""
-    seen = np.stack([tangent_points(domain, c, around[:, c]) for c in range(3)], axis=1)
-    outer = np.einsum("fcmi,fcmj->fcij", seen, seen) / around.shape[2]
-    total = np.zeros((domain.vertex_count, 2, 2))
-    np.add.at(total, domain.vertex, outer)
-    count = np.bincount(domain.vertex.ravel(), minlength=domain.vertex_count)
-    return total / count[:, None, None], seen
+    seen = tangent_points(domain, around)
+    vertex = np.repeat(domain.vertex.ravel(), around.shape[2])
+    x, y = seen.reshape(-1, 2).T
+    xx, xy, yy = (np.bincount(vertex, weights=product) for product in (x * x, x * y, y * y))
+    return np.stack([xx, xy, xy, yy], axis=1).reshape(-1, 2, 2) / np.bincount(vertex)[:, None, None], seen
 
 
 def _roots(moment: Floats) -> Floats:
@@ -227,9 +234,9 @@ def _roots(moment: Floats) -> Floats:
     return np.asarray((axes * np.sqrt(values)[:, None, :]) @ np.swapaxes(axes, 1, 2))
 
 
-def _regular(turn: Floats | float) -> Floats:
+def _regular(turn: ArrayLike) -> Floats:
     """The corners of regular triangles of circumradius 1, in columns: (2, 3, ...)."""
-    angles = np.add.outer(2 * np.pi / 3 * np.arange(3), turn)
+    angles = np.add.outer(2 * np.pi / 3 * np.arange(3), np.asarray(turn))
     return np.stack([np.cos(angles), np.sin(angles)])
 
 
