@@ -50,6 +50,7 @@ from orbiframe.exact_patches import (
 from orbiframe.fitter import Fitter as Fitter
 from orbiframe.flat_lattice import FlatLattice as FlatLattice
 from orbiframe.geodesic_triangulation import GeodesicTriangulation as GeodesicTriangulation
+from orbiframe.geodesics import ClosedGeodesic as ClosedGeodesic, Geodesics as Geodesics, Triangles as Triangles
 from orbiframe.geometry import Geometry as Geometry
 from orbiframe.group import Group as Group
 from orbiframe.location import Locator as Locator

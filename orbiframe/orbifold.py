@@ -91,7 +91,7 @@ class Orbifold:
     def _next_level(self, before: Copies, level: Copies, limit: Floats) -> Copies:
         """The neighbours of a level that lie within the limit and are new."""
         atlas = self.atlas
-        parent, step = self._steps(level.patch)
+        parent, step = self.steps(level.patch)
         place = np.einsum("kij,kj->ki", level.isometry[parent], atlas.isometry[step, :, 0])
         near = self.geometry.distance(self.geometry.origin, place) <= limit[level.base[parent]]
         parent, step, place = parent[near], step[near], place[near]
@@ -105,8 +105,8 @@ class Orbifold:
         new = new[new >= known] - known
         return Copies(base[new], patch[new], level.isometry[parent[new]] @ atlas.isometry[step[new]])
 
-    def _steps(self, patch: Ints) -> tuple[Ints, Ints]:
-        """All pairs (index into `patch`, transition that leaves that patch)."""
+    def steps(self, patch: Ints) -> tuple[Ints, Ints]:
+        """All pairs of an index into `patch` (n,) and a transition that leaves that patch."""
         leaving = np.argsort(self.atlas.tail, kind="stable")
         start = np.searchsorted(self.atlas.tail[leaving], np.arange(self.atlas.patch_count + 1))
         count = start[patch + 1] - start[patch]
