@@ -72,7 +72,7 @@ class QuadrilateralPatches:
     @property
     def degree(self) -> int:
         """The degree in either direction."""
-        return self.weights.shape[1] - 1
+        return int(self.weights.shape[1]) - 1
 
     def evaluate(self, s: Floats, t: Floats) -> Floats:
         """The points at parameters (m,) of every patch, (N, m, 3)."""
@@ -82,7 +82,7 @@ class QuadrilateralPatches:
 
     @property
     def net_volume(self) -> float:
-        """The signed volume inside of the control nets, as triangles: near to that of the surface, and exact at last."""
+        """The signed volume inside of the control nets, cut into triangles: near to that of the surface."""
         p = self.points - self.points.mean(axis=(0, 1, 2))
         a, b, c, d = p[:, :-1, :-1], p[:, 1:, :-1], p[:, 1:, 1:], p[:, :-1, 1:]
         return float(np.sum(np.cross(b, c) * a + np.cross(c, d) * a) / 6)
@@ -196,7 +196,7 @@ def _weights(basis: ElementBasis) -> Floats:
     x, k = basis.cells, basis.domain.geometry.curvature
     if k == 0:
         linear = x[..., 0]
-        return np.prod(linear[..., None, :] ** exponents(basis.degree), axis=-1)
+        return np.asarray(np.prod(linear[..., None, :] ** exponents(basis.degree), axis=-1))
     if basis.degree % 2:
         raise FitError(
             f"polynomials of odd degree {basis.degree} have no exact patches in S^2 and H^2 unless they are divided; "
@@ -231,7 +231,7 @@ def _swapped(degree: int) -> NDArray[np.intp]:
 def _quadrilateral_forms(degree: int) -> Floats:
     """The control net of each of three quadrilaterals from that of the triangle, (3, (d + 1)^2, n).
 
-    Quadrilateral c has the corners v_c, the middle of the edge after it, the centroid and the middle of the edge before.
+    Quadrilateral c has the corners v_c, the middle of the edge after it, the centroid, the middle of the edge before.
     Its map to barycentric coordinates is bilinear, so that the coefficient (a, b) is the mean of the blossoms with n11
     times the centroid, a - n11 times the middle after, b - n11 times the middle before and v_c else.
     """

@@ -37,7 +37,7 @@ class Gluing(NamedTuple):
 
 
 def alike(twin: Ints, same: Bools) -> Ints:
-    """1 or -1 for every triangle, (F,), so that all run alike after those with -1 are turned round; 1 if none can be."""
+    """1 or -1 for every triangle, (F,): all run alike when those with -1 are turned round; 1 if they never can."""
     count = len(twin) // 3
     face, other = np.arange(len(twin)) // 3, twin // 3
     here = np.concatenate([face, face + count])

@@ -31,8 +31,8 @@ class Component:
 
     kind: one of `KINDS`; name: as written in a configuration ("least-squares"); target: "package.module:object";
     summary: one line, shown by `orbiframe plugins`; extra: the pip requirement that supplies an optional dependency;
-    suffixes: file suffixes with their dot, lower case (readers, writers and exporters only); welds: whether every face has corners
-    of its own in the file, of which the reader joins the equal ones.
+    suffixes: file suffixes with their dot, lower case (readers, writers and exporters only); welds: whether every face
+    has corners of its own in the file, of which the reader joins the equal ones.
     """
 
     kind: str

@@ -30,15 +30,16 @@ def check(component: Component, registry: Registry) -> list[Verdict]:
 
 
 def equipments(component: Component, registry: Registry) -> Iterator[dict[str, Any]]:
-    """What a lab for a component needs, once for every suffix of a reader or writer.
+    """What a lab for a component needs, once for every suffix of a reader, writer or exporter.
 
     A basis that can be of any size is tried small, as the reference triangulations are.
     """
-    if component.kind not in ("reader", "writer"):
+    if not component.suffixes:
         sized = component.kind == "basis" and any(option.name == "size" for option in options_of(resolve(component)))
         yield {"params": {"size": SMALL}} if sized else {}
     for suffix in component.suffixes:
-        yield {"suffix": suffix, "counterpart": counterpart(component, suffix, registry)}
+        other = None if component.kind == "exporter" else counterpart(component, suffix, registry)
+        yield {"suffix": suffix, "counterpart": other}
 
 
 def counterpart(component: Component, suffix: str, registry: Registry) -> Callable[..., Any] | None:

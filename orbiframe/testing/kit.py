@@ -67,9 +67,9 @@ def contract_tests(
 ) -> Callable[..., None]:
     """A test for pytest, to be bound to a name that starts with test_: one case for each law of the kind.
 
-    component: the class or function; params: options bound to it; suffix and counterpart: for readers and writers,
-    see `Lab`. expected_failures: laws that are known not to hold, with the reason; a law in it that holds fails the
-    test. Raises UsageError for a kind without laws, or an expected failure that is no law.
+    component: the class or function; params: options bound to it; suffix and counterpart: for files, see `Lab`.
+    expected_failures: laws that are known not to hold, with the reason; a law in it that holds fails the test. Raises
+    UsageError for a kind without laws, or an expected failure that is no law.
     """
     import pytest
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +15,7 @@ from orbiframe.testing.polyhedra import reference_polyhedra
 
 if TYPE_CHECKING:
     from orbiframe.orbifold import Orbifold
+    from orbiframe.surface import OrbifoldSurface
     from orbiframe.triangulation import Triangulation
 
 
@@ -22,9 +23,9 @@ if TYPE_CHECKING:
 class Lab:
     """A fresh folder, random numbers that repeat, and reference objects.
 
-    tmp_path: an empty folder; params: the options that are bound to the component under test; suffix: the file suffix
-    to try (readers and writers); counterpart: the writer for a reader, the reader for a writer, None where there is
-    none.
+    tmp_path: an empty folder; params: the options that are bound to the component under test; suffix: the file
+    suffix to try (readers, writers and exporters); counterpart: the writer for a reader, the reader for a writer, None
+    where there is none.
     """
 
     tmp_path: Path
@@ -53,3 +54,15 @@ class Lab:
     def orbifolds(self) -> Mapping[str, Orbifold]:
         """The surfaces X/H of `triangulations`, by the same names."""
         return {name: triangulation.orbifold for name, triangulation in self.triangulations.items()}
+
+    @cached_property
+    def surfaces(self) -> Mapping[str, OrbifoldSurface]:
+        """Small surfaces of Powell-Sabin splines of degree 2, which have exact patches, on these triangulations."""
+        return {name: self.surface(name, "ps2") for name in self.triangulations}
+
+    def surface(self, name: str, basis: str) -> OrbifoldSurface:
+        """A small surface on one of the triangulations, of the functions of an installed basis."""
+        from orbiframe.testing.reference import reference_surface
+
+        shared = reference_surface(name, basis)
+        return replace(shared, coefficients=shared.coefficients.copy())

@@ -1,4 +1,4 @@
-"""Reference triangulations of X/H, made by the installed parametrizers from the reference polyhedra."""
+"""Reference triangulations of X/H and surfaces on them, made by installed components from the reference polyhedra."""
 
 from __future__ import annotations
 
@@ -6,9 +6,16 @@ from collections.abc import Mapping
 from functools import cache
 from types import MappingProxyType
 
+import numpy as np
+
+from orbiframe.basis import Basis
+from orbiframe.bisection import Bisection
 from orbiframe.diagonals import triangulated
+from orbiframe.fitter import Fitter
 from orbiframe.refinement import refine
 from orbiframe.registry import Registry
+from orbiframe.sampling import coordinate_samples
+from orbiframe.surface import OrbifoldSurface
 from orbiframe.testing.polyhedra import reference_polyhedra
 from orbiframe.triangulation import Triangulation
 
@@ -34,3 +41,24 @@ def _triangulation(name: str, registry: Registry) -> Triangulation:
     mesh = refine(triangulated(reference_polyhedra()[name]), density).polyhedron
     made: Triangulation = registry.load("parametrizer", parametrizer)(mesh, registry.load("geometry", geometry)(), None)
     return made
+
+
+@cache
+def reference_surface(name: str, basis: str, size: int = 30) -> OrbifoldSurface:
+    """The reference polyhedron of this name, approximated by functions of an installed basis; shared, so read-only."""
+    registry = Registry.discover(only=["bases", "fitters"])
+    triangulation = reference_triangulations()[name]
+    made: Basis = registry.load("basis", basis)(triangulation.orbifold, triangulation, size=size)
+    fitter: Fitter = registry.load("fitter", "least-squares")()
+    coefficients = fitter.fit(made, coordinate_samples(triangulation))
+    mesh = triangulation.polyhedron
+    leaves = np.arange(mesh.face_count)
+    return OrbifoldSurface(
+        triangulation,
+        Bisection(mesh, mesh, np.full_like(leaves, -1), leaves),
+        made,
+        coefficients,
+        np.zeros(3),
+        1.0,
+        basis,
+    )

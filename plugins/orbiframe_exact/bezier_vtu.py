@@ -10,35 +10,48 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import OrbifoldSurface, triangle_patches
+from orbiframe import OrbifoldSurface, PeriodicPatch, patches_of
 
+Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-_BEZIER_TRIANGLE = 76
+_BEZIER_TRIANGLE, _BEZIER_QUADRILATERAL = 76, 77
 _NAMES = {"<f8": "Float64", "<i8": "Int64", "|u1": "UInt8"}
 
 
 def write_bezier_vtu(path: Path, surface: OrbifoldSurface) -> None:
-    """Every micro triangle of the surface as one cell VTK_BEZIER_TRIANGLE with RationalWeights: the exact surface.
+    """Every polynomial piece of the surface as one cell with RationalWeights: the exact surface.
 
-    Raises FitError for a surface without exact patches.
+    VTK_BEZIER_TRIANGLE, or VTK_BEZIER_QUADRILATERAL for tensor products. Raises FitError for a surface without exact
+    patches.
     """
-    patches = triangle_patches(surface)
-    order = vtk_order(patches.degree)
-    points = patches.points[:, order].reshape(-1, 3)
-    cells, size = len(patches.points), len(order)
+    patches = patches_of(surface)
+    if isinstance(patches, PeriodicPatch):
+        pieces = patches.quadrilaterals()
+        count, order = len(pieces.points), quadrilateral_order(pieces.degree)
+        points, weights = pieces.points.reshape(count, -1, 3), pieces.weights.reshape(count, -1)
+        text = _vtu(_BEZIER_QUADRILATERAL, points[:, order], weights[:, order])
+    else:
+        order = triangle_order(patches.degree)
+        text = _vtu(_BEZIER_TRIANGLE, patches.points[:, order], patches.weights[:, order])
+    Path(path).write_text(text, encoding="ascii")
+
+
+def _vtu(kind: int, points: Floats, weights: Floats) -> str:
+    """The file of cells of one kind, with points (N, n, 3) and weights (N, n) of their own."""
+    cells, size = weights.shape
     arrays = (
-        ("<Points>", _array("Points", points, 3), "</Points>"),
+        ("<Points>", _array("Points", points.reshape(-1, 3), 3), "</Points>"),
         (
             '<PointData RationalWeights="RationalWeights">',
-            _array("RationalWeights", patches.weights[:, order].ravel()),
+            _array("RationalWeights", weights.ravel()),
             "</PointData>",
         ),
         (
             "<Cells>",
             _array("connectivity", np.arange(cells * size)),
             _array("offsets", size * np.arange(1, cells + 1)),
-            _array("types", np.full(cells, _BEZIER_TRIANGLE, dtype=np.uint8)),
+            _array("types", np.full(cells, kind, dtype=np.uint8)),
             "</Cells>",
         ),
     )
@@ -46,13 +59,13 @@ def write_bezier_vtu(path: Path, surface: OrbifoldSurface) -> None:
         '<?xml version="1.0"?>',
         '<VTKFile type="UnstructuredGrid" version="2.2" byte_order="LittleEndian" header_type="UInt64">',
         "<UnstructuredGrid>",
-        f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{cells}">',
+        f'<Piece NumberOfPoints="{weights.size}" NumberOfCells="{cells}">',
         *(line for part in arrays for line in part),
         "</Piece>",
         "</UnstructuredGrid>",
         "</VTKFile>",
     ]
-    Path(path).write_text("\n".join(lines) + "\n", encoding="ascii")
+    return "\n".join(lines) + "\n"
 
 
 def _array(name: str, values: NDArray[Any], components: int = 1) -> str:
@@ -65,7 +78,17 @@ def _array(name: str, values: NDArray[Any], components: int = 1) -> str:
 
 
 @lru_cache(maxsize=32)
-def vtk_order(degree: int) -> Ints:
+def quadrilateral_order(degree: int) -> Ints:
+    """The numbers (d + 1) s + t in the order of VTK: corners, edges that run along s and t, inside."""
+    d, inner = degree, range(1, degree)
+    corners = [(0, 0), (d, 0), (d, d), (0, d)]
+    edges = [[(k, 0) for k in inner], [(d, k) for k in inner], [(k, d) for k in inner], [(0, k) for k in inner]]
+    places = [*corners, *(place for edge in edges for place in edge), *((s, t) for t in inner for s in inner)]
+    return np.array([(d + 1) * s + t for s, t in places], dtype=np.intp)
+
+
+@lru_cache(maxsize=32)
+def triangle_order(degree: int) -> Ints:
     """The numbers of our coefficients in the order of VTK: corners, edges, then the triangle inside in the same way."""
     return np.array([_number(*place) for place in _places(degree, 0)], dtype=np.intp)
 

@@ -3,26 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.IGESControl import IGESControl_Writer
-from OCP.IGESData import IGESData_GlobalSection
+from OCP.IGESData import IGESData_GlobalSection, IGESData_IGESWriter
+from OCP.IGESSelect import IGESSelect_WorkLibrary
 from OCP.Interface import Interface_Static
 from OCP.Message import Message
+from OCP.StepBasic import StepBasic_Product
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
 from OCP.TCollection import TCollection_HAsciiString
-from OCP.TopAbs import TopAbs_SOLID
 
-from orbiframe import FitError, OrbifoldSurface, __version__, patches_of
+from orbiframe import FitError, OrbifoldSurface, PeriodicPatch, __version__, patches_of
 from orbiframe_exact.shapes import shape_of
 
 # Files have no time of day and no path, so that one surface always gives the same bytes.
 _TIME = "1970-01-01T00:00:00"
 _NAME = "surface"
 _SYSTEM = f"orbiframe {__version__}"
+
+_AS_TOPOLOGY = 1  # IGES: shells and solids that share their edges, not a heap of trimmed surfaces
 
 
 def write_step(path: Path, surface: OrbifoldSurface) -> None:
@@ -31,13 +35,14 @@ def write_step(path: Path, surface: OrbifoldSurface) -> None:
     A solid where it has an inside, else a shell; a tensor product is one periodic surface. Raises FitError for a
     surface without exact patches, or where Open CASCADE fails.
     """
-    shape = shape_of(patches_of(surface))
+    patches = patches_of(surface)
+    shape = shape_of(patches)
     _silence()
     writer = STEPControl_Writer()
-    for key, value in (("write.step.unit", "MM"), ("write.step.product.name", _NAME)):
-        Interface_Static.SetCVal_s(key, value)
-    # Curves in the parameter planes are lines that every reader finds again; they would double the file.
-    Interface_Static.SetIVal_s("write.surfacecurve.mode", 0)
+    Interface_Static.SetCVal_s("write.step.unit", "MM")
+    # Readers find lines in the parameter squares of patches again, and without them files are smaller by a third; not
+    # so on a periodic surface, where two of them are one curve in space.
+    Interface_Static.SetIVal_s("write.surfacecurve.mode", int(isinstance(patches, PeriodicPatch)))
     _require(writer.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone, "convert the shape to STEP")
     _sign_step(writer)
     _require(writer.Write(str(path)) == IFSelect_RetDone, "write the STEP file")
@@ -47,15 +52,31 @@ def write_iges(path: Path, surface: OrbifoldSurface) -> None:
     """The surface as exact rational patches in an IGES file (5.3, millimetres); see `write_step`."""
     shape = shape_of(patches_of(surface))
     _silence()
-    writer = IGESControl_Writer("MM", int(shape.ShapeType() == TopAbs_SOLID))
+    writer = IGESControl_Writer("MM", _AS_TOPOLOGY)
     _require(bool(writer.AddShape(shape)), "convert the shape to IGES")
     writer.ComputeModel()
     _sign_iges(writer)
-    _require(bool(writer.Write(str(path))), "write the IGES file")
+    Path(path).write_bytes(_iges_text(writer.Model()))
+
+
+def _iges_text(model: Any) -> bytes:
+    """The lines of an IGES file, with as many digits as STEP has; by itself Open CASCADE writes 10."""
+    writer, lines = IGESData_IGESWriter(model), BytesIO()
+    writer.FloatWriter().SetFormat("%.12E")
+    writer.FloatWriter().SetZeroSuppress(True)
+    writer.SendModel(IGESSelect_WorkLibrary.DefineProtocol_s())
+    _require(bool(writer.Print(lines)), "write the IGES file")
+    return lines.getvalue()
 
 
 def _sign_step(writer: Any) -> None:
-    header = APIHeaderSection_MakeHeader(writer.Model())
+    model = writer.Model()
+    entities = (model.Value(number) for number in range(1, model.NbEntities() + 1))
+    product = next(entity for entity in entities if isinstance(entity, StepBasic_Product))
+    # By itself Open CASCADE counts the products of the process.
+    product.SetId(_text(_NAME))
+    product.SetName(_text(_NAME))
+    header = APIHeaderSection_MakeHeader(model)
     header.SetName(_text(_NAME))
     header.SetTimeStamp(_text(_TIME))
     header.SetAuthorValue(1, _text(""))

@@ -128,15 +128,14 @@ def _periodic_face(patch: PeriodicPatch) -> Any:
     """One face on a surface that is periodic in u and v; of a Klein bottle one period of its glide."""
     numbers = [np.unique(knots, return_counts=True) for knots in patch.knots]
     points = patch.points
-    for axis, (_, times) in enumerate(numbers):
+    for axis, (_, first) in enumerate(numbers):
         # Here N_0 begins at the first knot; there the last of the first knots is knot `degree` of pole 1.
-        points = np.roll(points, patch.degree + 1 - int(times[0]), axis=axis)
-    lines = [(np.append(k, k[0] + period), np.append(t, t[0])) for (k, t), period in zip(numbers, patch.periods)]
-    knots = [_array(k) for k, _ in lines]
-    times = [_integers(t) for _, t in lines]
+        points = np.roll(points, patch.degree + 1 - int(first[0]), axis=axis)
+    knots = [_array(np.append(k, k[0] + p)) for (k, _), p in zip(numbers, patch.periods, strict=True)]
+    times = [_integers(np.append(t, t[0])) for _, t in numbers]
     surface = Geom_BSplineSurface(_poles(points), *knots, *times, patch.degree, patch.degree, True, True)
     if patch.glide:
-        u, v = (float(k[0]) for k, _ in lines)
+        u, v = (float(k[0]) for k, _ in numbers)
         surface.Segment(u, u + 1, v, v + 1)
     return BRepBuilderAPI_MakeFace(surface, _TOLERANCE).Face()
 

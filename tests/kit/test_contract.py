@@ -13,7 +13,18 @@ from orbiframe.testing import Lab, component_laws, contract_tests, laws_of
 from orbiframe.testing.check import check, equipments
 from orbiframe.testing.kit import bound, has_laws, tried
 
-LAWFUL_KINDS = ("geometry", "marker", "group", "parametrizer", "optimizer", "basis", "fitter", "reader", "writer")
+LAWFUL_KINDS = (
+    "geometry",
+    "marker",
+    "group",
+    "parametrizer",
+    "optimizer",
+    "basis",
+    "fitter",
+    "reader",
+    "writer",
+    "exporter",
+)
 REGISTRY = Registry.discover()
 DECLARED = [component for component, _ in REGISTRY.declarations()]
 
@@ -23,7 +34,7 @@ def title(component: Component) -> str:
 
 
 def component_cases():
-    """Readers and writers of several suffixes on the first; `tests/plugins` tries the others."""
+    """Readers, writers and exporters of several suffixes on the first; `tests/plugins` tries the others."""
     return [
         pytest.param(component, equipment, law, id=" ".join([title(component), *suffix(equipment), law.__name__]))
         for component in DECLARED
