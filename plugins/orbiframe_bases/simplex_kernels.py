@@ -145,9 +145,9 @@ def fill_columns(place, reach, elements, program, family, row_start, slots, valu
     """The rows of design matrices: all functions that may be nonzero on the triangle of each point.
 
     place: number, triangle (n,), columns (n, 3, 3) (point and frame) of each point and (curvature, degree); reach:
-    `Reach` as arrays; elements: bounds, rows and heights; program: start, child, orders, outputs; family: factor (E, outputs), and rows of linear
-    functions (E, outputs, 3) or (0, 0, 3); slots: where the outputs of a candidate stand in its row; values: (kinds,
-    nonzeros), zero before.
+    `Reach` as arrays; elements: bounds, rows and heights; program: start, child, orders, outputs; family: factor (E,
+    outputs), and rows of linear functions (E, outputs, 3) or (0, 0, 3); slots: where the outputs of a candidate stand
+    in its row; values: (kinds, nonzeros), zero before.
     """
     order, face, columns, shape = place
     first, element, isometry = reach

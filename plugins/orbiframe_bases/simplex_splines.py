@@ -101,7 +101,7 @@ class SimplexSplines(DifferentiableBasis):
 
     def values(self, points: Points, coefficients: Floats) -> Floats:
         """See `Basis`; evaluated without a design matrix."""
-        return self.jets(points, coefficients, 0)[0]
+        return np.asarray(self.jets(points, coefficients, 0)[0])
 
     def jets(self, points: Points, coefficients: Floats, order: int) -> Floats:
         """See `DifferentiableBasis`; evaluated without a design matrix."""
