@@ -27,7 +27,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--polygon", metavar="NAME", default="regular", help="regular (the default), or the name of a group")
     add("--systole", action="store_true", help="the shortest closed geodesic, and how many there are")
     add("--spectrum", metavar="N", type=int, help="the N smallest eigenvalues of the Laplacian, with multiplicities")
-    add("--draw", metavar="FILE", type=Path, help="a picture of the polygon and its tiles, .svg or .png")
+    add("--draw", metavar="FILE", type=Path, help="a picture of the polygon and its tiles, .svg, .png or .pdf")
+    add("--model", metavar="NAME", help="of the picture: projective, conformal (the default), hyperboloid or sphere")
+    shown = parser.add_mutually_exclusive_group().add_argument
+    shown("--tiles", metavar="N", type=int, help="draw at most N tiles, the nearest")
+    shown("--radius", metavar="R", type=float, help="draw the tiles that meet the disc of radius R about the origin")
+    add("--function", metavar="K", type=int, help="draw eigenfunction K of the Laplacian, the constant one being 0")
     add("--json", action="store_true", help="print one JSON object")
     parser.set_defaults(run=run)
 
@@ -38,14 +43,26 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
 
     if args.spectrum is not None and args.spectrum < 1:
         raise UsageError(f"--spectrum {args.spectrum}: ask for at least 1 eigenvalue")
-    if args.draw is not None:
-        require_folder(args.draw)
+    _require_picture(args)
     word = Word.parse(args.word)
     found = _described(word)
     if args.systole or args.spectrum or args.draw:
         found.update(_computed(args, _group(word, args.polygon, registry), registry))
     print(json.dumps(found) if args.json else "\n".join(_lines(found)))
     return 0
+
+
+def _require_picture(args: argparse.Namespace) -> None:
+    """Raise UsageError for options of a picture without its file, or a file that is none."""
+    from orbiframe.drawing.file import require_picture_file
+
+    if args.draw is not None:
+        require_folder(args.draw)
+        require_picture_file(args.draw)
+        return
+    for name in ("model", "tiles", "radius", "function"):
+        if getattr(args, name) is not None:
+            raise UsageError(f"--{name} belongs to a picture; name its file with --draw, such as --draw tiles.svg")
 
 
 def _group(word: Word, polygon: str, registry: Registry) -> Group:
@@ -87,19 +104,37 @@ def _computed(args: argparse.Namespace, group: Group, registry: Registry) -> dic
         from orbiframe.cell_triangulation import cell_triangulation
         from orbiframe.spectrum import laplace_spectrum
 
-        bernstein = registry.load("basis", "bernstein")
-        values = laplace_spectrum(
-            cell_triangulation(group),
-            lambda domain, degree: bernstein(domain.orbifold, domain, degree=degree),
-            args.spectrum,
-        )
+        values = laplace_spectrum(cell_triangulation(group), _polynomials(registry), args.spectrum)
         found["spectrum"] = [{"value": e.value, "multiplicity": e.multiplicity, "error": e.error} for e in values]
     if args.draw:
-        from orbiframe.drawing import draw_group
-
-        draw_group(group, args.draw)
         found["picture"] = str(args.draw)
+        if args.function is not None:
+            found["function"] = {"number": args.function}
+        _draw(args, group, registry, found.get("function", {}))
     return found
+
+
+def _draw(args: argparse.Namespace, group: Group, registry: Registry, about: dict[str, Any]) -> None:
+    """Write the picture, and say which eigenvalue its function has."""
+    from orbiframe.drawing.group_picture import draw_group
+
+    function = None
+    if args.function is not None:
+        from orbiframe.cell_triangulation import cell_triangulation
+        from orbiframe.drawing.function_image import lifted
+        from orbiframe.spectrum import eigenfunction
+
+        space, coefficients, about["eigenvalue"] = eigenfunction(
+            cell_triangulation(group), _polynomials(registry), args.function
+        )
+        function = lifted(space, coefficients)
+    draw_group(group, args.draw, model=args.model, radius=args.radius, tiles=args.tiles, function=function)
+
+
+def _polynomials(registry: Registry) -> Any:
+    """The family of continuous piecewise polynomials of even degree."""
+    bernstein = registry.load("basis", "bernstein")
+    return lambda domain, degree: bernstein(domain.orbifold, domain, degree=degree)
 
 
 def _lines(found: dict[str, Any]) -> list[str]:
@@ -117,6 +152,8 @@ def _lines(found: dict[str, Any]) -> list[str]:
         ("spectrum" if k == 0 else "", f"{e['value']:.12g} ({e['multiplicity']})")
         for k, e in enumerate(found.get("spectrum", []))
     ]
+    if "function" in found:
+        rows.append(("function", f"{found['function']['number']}, eigenvalue {found['function']['eigenvalue']:.9g}"))
     if "picture" in found:
         rows.append(("picture", found["picture"]))
     return [f"{name:<10}{text}" for name, text in rows]

@@ -1,0 +1,245 @@
+"""The picture of a group: its tiles coloured by element, and the fundamental polygon with labelled sides."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe.drawing.cell import Cell, cell_of
+from orbiframe.drawing.colours import GREY, INK, PAPER, line_colour, mixed, tint
+from orbiframe.drawing.file import require_picture_file, save_picture
+from orbiframe.drawing.function_image import Function, function_image
+from orbiframe.drawing.models import Chart, Model, Solid, model_of
+from orbiframe.drawing.picture import Curve, Item, Label, Picture, Shape, arrowhead, circle, polygon
+from orbiframe.drawing.tiles import Tiles, nearest_tiles, tiles_within
+from orbiframe.errors import UsageError
+from orbiframe.group import Group
+from orbiframe.word import text_of
+
+Floats = NDArray[np.float64]
+
+WIDTH = 400.0  # of the window, in points
+MARGIN = 4.0
+TILES = {-1: 450, 0: 60, 1: 2}
+_SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+# Widths of lines go with the square root of the size of a tile on the page, from the thickest to the thinnest.
+_THICK, _THIN, _CLASSES = 1.0, 0.12, 6
+# Tints of tiles, stronger for odd lengths, and how fast they fade with the length.
+_TINTS, _FADE = (0.30, 0.52), 0.93
+# The hyperboloid is cut off so many times as high as the corners of F are.
+_RIM = 1.3
+_MOTIF_LEAST = 9.0  # points; smaller tiles show no motif
+
+
+def draw_group(
+    group: Group,
+    path: str | Path,
+    *,
+    model: str | None = None,
+    radius: float | None = None,
+    tiles: int | None = None,
+    motif: bool | None = None,
+    function: Function | None = None,
+) -> None:
+    """Write the picture of a group to a .svg, .png or .pdf file; see `group_picture`."""
+    require_picture_file(Path(path))
+    picture = group_picture(group, model=model, radius=radius, tiles=tiles, motif=motif, function=function)
+    save_picture(picture, path)
+
+
+def group_picture(
+    group: Group,
+    *,
+    model: str | None = None,
+    radius: float | None = None,
+    tiles: int | None = None,
+    motif: bool | None = None,
+    function: Function | None = None,
+) -> Picture:
+    """The tiling of X by a group, with the labelled fundamental polygon in the middle.
+
+    A tile has the colour of the side of F that one crosses first on a shortest way to it, the mean where there is a
+    choice, in a stronger and a weaker tint for odd and even lengths of the way. Sides that are glued have one colour
+    and one letter, and arrows that are laid upon one another.
+
+    model: projective, conformal (the default), hyperboloid, or sphere (the default for S^2); radius: draw the tiles
+    that meet this disc about the origin, or tiles: at most so many, the nearest; motif: a letter F in every tile shows
+    which elements reverse orientation, by default where there are some; function: values (n,) of an invariant function
+    at points (n, 3) of X, drawn as colours instead of those of the tiles.
+
+    Raises UsageError for a model that the geometry has not, and for too many tiles.
+    """
+    if radius is not None and tiles is not None:
+        raise UsageError("a radius and a number of tiles are given; give one of them")
+    cell, chosen = cell_of(group), model_of(group.geometry, model)
+    with_motif = (not group.word.orientable and function is None) if motif is None else motif
+    if isinstance(chosen, Solid):
+        chosen = replace(chosen, height=_RIM * float(np.cosh(cell.circumradius)))
+    if radius is not None:
+        shown = tiles_within(group, radius)
+    elif tiles is None and isinstance(chosen, Solid) and group.geometry.curvature < 0:
+        shown = tiles_within(group, float(np.arccosh(chosen.height)))
+    else:
+        shown = nearest_tiles(group, TILES[group.geometry.curvature] if tiles is None else tiles)
+    return GroupPicture(cell, shown, chosen, with_motif, function).picture()
+
+
+@dataclass(frozen=True, eq=False)
+class GroupPicture:
+    """What the picture of a group is made of."""
+
+    cell: Cell
+    tiles: Tiles
+    model: Model
+    motif: bool = False
+    function: Function | None = None
+
+    def picture(self) -> Picture:
+        """The items in the order of drawing."""
+        half = WIDTH / 2 + MARGIN
+        drawn = [*self._background(), *self._tiles(), *self._sides(), *self._rim(), *self._labels()]
+        items = [item for item in drawn if not isinstance(item, Shape) or len(item.paths)]
+        return Picture(tuple(items), (-half, -half, half, half))
+
+    @cached_property
+    def scale(self) -> float:
+        """Points of the page for a unit of the model."""
+        return WIDTH / 2 / self.half_width
+
+    @cached_property
+    def half_width(self) -> float:
+        """Half the width of the window in units of the model."""
+        boundary = self.model.boundary()
+        if boundary:
+            return float(max(np.abs(curve.points - self.middle).max() for curve in boundary))
+        return 2.2 * float(np.linalg.norm(self.model.place(self.cell.corners), axis=1).max())
+
+    @cached_property
+    def middle(self) -> Floats:
+        """The middle of the window in units of the model."""
+        boundary = self.model.boundary()
+        points = (
+            np.concatenate([curve.at(np.linspace(0, 1, 25)) for curve in boundary]) if boundary else np.zeros((1, 2))
+        )
+        return np.asarray((points.min(axis=0) + points.max(axis=0)) / 2)
+
+    @cached_property
+    def window(self) -> tuple[Curve, ...]:
+        """What the tiles are clipped to: the boundary of the model, or a square."""
+        boundary = self.model.boundary()
+        square = WIDTH / 2 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+        return tuple(self._on_page(curve) for curve in boundary) if boundary else tuple(polygon(square))
+
+    def _on_page(self, curve: Curve) -> Curve:
+        return curve.placed(self.scale, -self.scale * self.middle)
+
+    def _place(self, x: Floats) -> Floats:
+        return np.asarray((self.model.place(x) - self.middle) * self.scale)
+
+    def _background(self) -> Iterator[Item]:
+        if self.function is not None:
+            half = WIDTH / 2
+            yield function_image(self.function, lambda p: self.model.points(p / self.scale + self.middle), half)
+
+    @cached_property
+    def _corners(self) -> Floats:
+        """The corners of all tiles, (n, m, 3)."""
+        return np.asarray(np.einsum("kij,mj->kmi", self.tiles.elements, self.cell.corners))
+
+    @cached_property
+    def _sizes(self) -> Floats:
+        """The extent of every tile on the page, in points."""
+        at = self._place(self._corners)
+        return np.asarray((at.max(axis=1) - at.min(axis=1)).max(axis=1))
+
+    @cached_property
+    def _widths(self) -> Floats:
+        """The width of the lines of every tile, of few different ones."""
+        share = np.sqrt(np.minimum(self._sizes / self._sizes[0], 1.0))
+        steps = np.round(share * _CLASSES) / _CLASSES
+        return np.asarray(np.maximum(_THICK * steps, _THIN))
+
+    def _tiles(self) -> Iterator[Item]:
+        fills = [self._fill(k) for k in range(len(self._corners))]
+        styles = list(zip(fills, self._widths.tolist(), strict=True))
+        for fill, width in sorted(set(styles), key=lambda style: (-style[1], style[0])):
+            chosen = [k for k, style in enumerate(styles) if style == (fill, width)]
+            shade = None if self.function is not None else fill
+            paths = self._paths(self._corners[chosen])
+            yield Shape(paths, True, shade, INK, width, clip=self.window)
+        if self.motif:
+            elements = self.tiles.elements[self._sizes > _MOTIF_LEAST]
+            motifs = self._paths(np.einsum("kij,mj->kmi", elements, self.cell.motif))
+            yield Shape(motifs, True, fill=INK, opacity=0.55, clip=self.window)
+
+    def _paths(self, corners: Floats, closed: bool = True) -> list[list[Curve]]:
+        """The polygons (n, m, 3), or chains of geodesics, on the page."""
+        return [[self._on_page(curve) for curve in path] for path in self.model.paths(corners, closed)]
+
+    def _fill(self, tile: int) -> str:
+        """Paper for F; the colours of the first sides for the others, stronger and weaker in turn."""
+        length, first = int(self.tiles.length[tile]), np.flatnonzero(self.tiles.first[tile])
+        if length == 0:
+            return PAPER
+        colour = mixed([line_colour(abs(self.cell.letters[side])) for side in first])
+        return tint(colour, _TINTS[length % 2] * _FADE**length)
+
+    def _sides(self) -> Iterator[Item]:
+        """The sides of F, thick and in the colours of their letters, with arrows."""
+        for letter, pieces in zip(self.cell.letters, self.cell.sides, strict=True):
+            curves = self._paths(np.concatenate([pieces[:, 0], pieces[-1:, 1]])[None], closed=False)
+            yield Shape(curves, stroke="#ffffff", width=4.2)
+            yield Shape(curves, stroke=self._colour(letter), width=2.4)
+            if curves:
+                yield self._arrow(curves[0], letter)
+        corners = self._place(self.cell.corners[:: self.cell.pieces])
+        dots = [list(circle(corner, 2.2)) for corner in corners]
+        yield Shape(dots, True, fill=INK)
+
+    def _colour(self, letter: int) -> str:
+        """The colour of a side; none of its own over a function."""
+        return line_colour(abs(letter)) if self.function is None else INK
+
+    def _arrow(self, side: list[Curve], letter: int) -> Shape:
+        """The arrow of a side; on the hyperboloid away from the middle, where a side turns sharply."""
+        way = side[len(side) // 2]
+        at = 0.0 if len(side) % 2 == 0 else 0.5
+        if isinstance(self.model, Solid) and self.cell.geometry.curvature < 0:
+            at = 0.34 if letter > 0 else 0.66
+        before, after = way.at([max(at - 1e-3, 0.0), at + 1e-3])
+        tip = way.at([at])[0]
+        return arrowhead(tip, float(np.sign(letter)) * (after - before), self._letter_size, self._colour(letter))
+
+    @cached_property
+    def _letter_size(self) -> float:
+        """The size of letters, smaller where a polygon has many sides."""
+        corners = self._place(self.cell.corners)
+        side = float(np.linalg.norm(corners - np.roll(corners, -1, axis=0), axis=1).min())
+        return float(np.clip(side / 4, 7.0, 14.0))
+
+    def _rim(self) -> Iterator[Item]:
+        if self.model.boundary():
+            yield Shape([self.window], True, stroke=INK, width=1.0)
+            if isinstance(self.model, Solid) and self.cell.geometry.curvature < 0:
+                heights = np.cosh(np.arange(1.0, np.arccosh(self.model.height)))
+                levels = [[self._on_page(self.model.level(float(height)))] for height in heights]
+                yield Shape(levels, stroke=GREY, width=0.4, dash=(2.0, 2.5))
+        elif isinstance(self.model, Chart):
+            yield Shape([self.window], True, stroke=INK, width=0.6)
+
+    def _labels(self) -> Iterator[Item]:
+        """Letters inside F, beside the middles of their sides."""
+        centre = self._place(self.cell.geometry.origin)
+        for letter, middle in zip(self.cell.letters, self.cell.middles, strict=True):
+            if not len(self.model.front(middle[None], False)):
+                continue
+            at = self._place(middle)
+            inward = (centre - at) / np.linalg.norm(centre - at)
+            size = self._letter_size
+            name = text_of(abs(letter)).translate(_SUBSCRIPTS)
+            yield Label(name, at + 1.15 * size * inward, size, self._colour(letter), halo=self.function is not None)
