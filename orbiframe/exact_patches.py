@@ -81,9 +81,13 @@ class QuadrilateralPatches:
         return np.asarray(np.einsum("mnst,nstk->nmk", values, self.points) / values.sum(axis=(2, 3)).T[..., None])
 
     @property
-    def net_volume(self) -> float:
-        """The signed volume inside of the control nets, cut into triangles: near to that of the surface."""
-        p = self.points - self.points.mean(axis=(0, 1, 2))
+    def volume(self) -> float:
+        """The signed volume inside, of triangles between 8 times 8 points on each patch."""
+        basis = _bernstein(self.degree, np.linspace(0, 1, 8))
+        centred = self.points - self.points.mean(axis=(0, 1, 2))
+        homogeneous = self.weights[..., None] * np.insert(centred, 3, 1.0, axis=-1)
+        found = np.einsum("as,nstk,bt->nabk", basis, homogeneous, basis, optimize=True)
+        p = found[..., :3] / found[..., 3:]
         a, b, c, d = p[:, :-1, :-1], p[:, 1:, :-1], p[:, 1:, 1:], p[:, :-1, 1:]
         return float(np.sum(np.cross(b, c) * a + np.cross(c, d) * a) / 6)
 
@@ -146,7 +150,7 @@ def periodic_patch(surface: OrbifoldSurface, basis: TensorBasis) -> PeriodicPatc
     points = surface.scale * basis.net(surface.coefficients) + surface.origin
     glide = basis.lattice.glide
     patch = PeriodicPatch(basis.degree, basis.knots, points, (2.0 if glide else 1.0, 1.0), glide)
-    return patch if glide or patch.quadrilaterals().net_volume > 0 else patch.transposed()
+    return patch if glide or patch.quadrilaterals().volume > 0 else patch.transposed()
 
 
 def triangle_patches(surface: OrbifoldSurface, basis: ElementBasis) -> TrianglePatches:
@@ -160,7 +164,7 @@ def triangle_patches(surface: OrbifoldSurface, basis: ElementBasis) -> TriangleP
     points = surface.scale * basis.net(surface.coefficients) / weights[..., None] + surface.origin
     sign = alike(basis.domain.twin, basis.domain.same)
     patches = _turned(basis, points, weights, sign)
-    if patches.gluing.same.any() or patches.quadrilaterals().net_volume > 0:
+    if patches.gluing.same.any() or patches.quadrilaterals().volume > 0:
         return patches
     return _turned(basis, points, weights, -sign)
 

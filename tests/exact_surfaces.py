@@ -1,0 +1,43 @@
+"""Small surfaces with exact patches, and points of theirs that are found without the patches."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from orbiframe import Fitter, OrbifoldSurface, Points, Registry
+from orbiframe.sampling import coordinate_samples
+from orbiframe.testing.reference import reference_surface
+
+REGISTRY = Registry.discover()
+
+
+@cache
+def surface_of(name: str, basis: str, **options: object) -> OrbifoldSurface:
+    """A reference polyhedron approximated by some functions, moved and scaled in space; shared, so read-only."""
+    first = reference_surface(name, "ps2")
+    made = REGISTRY.load("basis", basis)(first.orbifold, first.triangulation, **{"size": 120, **options})
+    fitter: Fitter = REGISTRY.load("fitter", "least-squares")()
+    coefficients = fitter.fit(made, coordinate_samples(first.triangulation))
+    return replace(
+        first, basis=made, basis_name=basis, coefficients=coefficients, origin=np.array([1.0, -2.0, 0.5]), scale=1.5
+    )
+
+
+def on_cells(surface: OrbifoldSurface, barycentric: np.ndarray) -> np.ndarray:
+    """The surface at barycentric coordinates (m, 3) of each micro triangle, (N, m, 3), by its own evaluation."""
+    basis = surface.basis
+    flat = np.einsum("mc,fkcj->fkmj", barycentric, basis.cells)
+    inner = basis.domain.geometry.project(flat)
+    x = np.einsum("fij,fkmj->fkmi", basis.domain.placement, inner)
+    patch = np.broadcast_to(basis.domain.patch[:, None, None], x.shape[:3]).ravel()
+    return surface.evaluate(Points(patch, x.reshape(-1, 3))).reshape(-1, len(barycentric), 3)
+
+
+def at_lattice(surface: OrbifoldSurface, place: np.ndarray) -> np.ndarray:
+    """The surface at lattice coordinates (n, 2), by its own evaluation."""
+    lattice = surface.basis.lattice
+    plane = (place @ lattice.basis.T - lattice.shift[0]) @ np.linalg.inv(lattice.linear[0]).T
+    return surface.evaluate(Points(np.zeros(len(place), dtype=np.intp), np.insert(plane, 0, 1.0, axis=1)))
