@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from orbiframe import FormatError, PluginError, Polyhedron
 from orbiframe_open3d.links import require_own_files
@@ -29,7 +30,18 @@ def polyhedron_of(path: Path) -> Polyhedron:
         raise FormatError(f"{path}: a coordinate is not finite, or a face names a vertex that is not there")
     # Adding 0 makes -0 the same as 0.
     vertices, place = np.unique(points.astype(np.float64) + 0.0, axis=0, return_inverse=True)
-    return Polyhedron.from_faces(vertices, place.ravel()[tail].reshape(-1, 3))
+    made = Polyhedron.from_faces(vertices, place.ravel()[tail].reshape(-1, 3))
+    return made.with_vertices(vertices, _normals(mesh, place.ravel(), len(vertices)))
+
+
+def _normals(mesh: Any, place: NDArray[np.intp], count: int) -> NDArray[np.float64] | None:
+    """The normals of the joined vertices; None where there are none, or where a vertex has several, as on an edge."""
+    if "normals" not in mesh.vertex:
+        return None
+    given = mesh.vertex.normals.numpy().astype(np.float64)
+    normals = np.empty((count, 3))
+    normals[place] = given
+    return normals if np.allclose(normals[place], given, atol=1e-6) else None
 
 
 def save(path: Path, polyhedron: Polyhedron) -> None:
@@ -37,6 +49,8 @@ def save(path: Path, polyhedron: Polyhedron) -> None:
     o3d = _open3d()
     vertices = o3d.core.Tensor(polyhedron.vertices.astype(np.float32))
     mesh = o3d.t.geometry.TriangleMesh(vertices, o3d.core.Tensor(polyhedron.triangles.astype(np.int64)))
+    if polyhedron.normals is not None:
+        mesh.vertex.normals = o3d.core.Tensor(polyhedron.normals.astype(np.float32))
     if not o3d.t.io.write_triangle_mesh(str(path), mesh):
         raise FormatError(f"{path}: Open3D cannot write this file; it writes glb, gltf, fbx, ply, obj, off and stl")
 

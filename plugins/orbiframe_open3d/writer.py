@@ -14,11 +14,11 @@ MEMORY = 2**33
 
 
 def write(path: Path, polyhedron: Polyhedron, *, seconds: float = 60.0) -> None:
-    """Write triangles, with coordinates as float32.
+    """Write triangles and the normals of their vertices, as float32.
 
     seconds: the most time that it may take for a small file; each megabyte adds a second. Raises FormatError for faces
     that are no triangles, and where Open3D fails; PluginError where it is not installed or lacks a system library.
-    Normals and colours are left out, with a warning.
+    Colours are left out, with a warning.
     """
     larger = np.flatnonzero(polyhedron.face_sizes != 3)
     if len(larger):
@@ -26,6 +26,6 @@ def write(path: Path, polyhedron: Polyhedron, *, seconds: float = 60.0) -> None:
             f"{path}: this format holds triangles only, but face {larger[0]} has {polyhedron.face_sizes[larger[0]]} "
             f"corners ({len(larger)} such faces); write OFF, OBJ or PLY, or use convert --triangulate"
         )
-    if any(table is not None for table in (polyhedron.normals, polyhedron.colors, polyhedron.face_colors)):
-        warnings.warn(f"{path.name}: normals and colours are left out; PLY keeps them", stacklevel=2)
+    if any(table is not None for table in (polyhedron.colors, polyhedron.face_colors)):
+        warnings.warn(f"{path.name}: colours are left out; PLY keeps them", stacklevel=2)
     confined_write("orbiframe_open3d.triangles:save", path, polyhedron, seconds=seconds, memory=MEMORY)
