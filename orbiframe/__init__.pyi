@@ -107,5 +107,6 @@ from orbiframe.topology import (
 from orbiframe.triangulation import Triangulation as Triangulation
 from orbiframe.voronoi import cell_areas as cell_areas, circumcentres as circumcentres, circumradii as circumradii
 from orbiframe.word import Word as Word, standard_word as standard_word
+from orbiframe.word_length import elements_by_length as elements_by_length, growth_series as growth_series
 
 __version__: str

@@ -42,13 +42,15 @@ class LengthSpectrum:
     """Closed geodesics of X/H: conjugacy classes of the group, a class and its inverse counted once, by length.
 
     length: (n,), rising; primitive: (n,), runs once through its curve; one_sided: (n,), going round it reverses
-    orientation; word: n words in the letters of the group, a representative of each.
+    orientation; word: n words in the letters of the group, one of each class; error: the largest difference between the
+    lengths of two elements of one class, which is what rounding has done.
     """
 
     length: Floats
     primitive: Bools
     one_sided: Bools
     word: tuple[tuple[int, ...], ...]
+    error: float
 
     @property
     def multiplicities(self) -> list[tuple[float, int]]:
@@ -64,9 +66,9 @@ def length_spectrum(group: Group, up_to: float) -> LengthSpectrum:
     A closed geodesic runs through the Dirichlet cell, so that some element of its class has an axis that meets the
     cell: it moves the origin by d with cosh(d/2) <= cosh(R) cosh(L/2) at most, R the circumradius of the cell. Two such
     elements are conjugate if and only if one follows from the other by moving along the axis from tile to tile. In E^2
-    parallel closed geodesics are one class, in S^2 those of the projective plane are. Lengths are exact to about
-    1e-12 (for d up to 12; the error grows like eps e^d). Raises GeometryError where rounding decides, or where there
-    are too many elements.
+    parallel closed geodesics are one class, in S^2 those of the projective plane are. Raises GeometryError where rounding
+    decides: where the conjugates of an element are not found, lengths of one class differ by more than 1e-8, or those
+    of two by less than 1e-6 and more than that; and where there are too many elements.
     """
     return _spectrum(group, dirichlet_cell(group), up_to)
 
@@ -127,7 +129,7 @@ def _spectrum(group: Group, cell: DirichletCell, up_to: float) -> LengthSpectrum
 
 
 def _doubles(found: Elements) -> Spin:
-    return Spin(found.cell.geometry.curvature, found.a, found.b, found.reverses)  # type: ignore[arg-type]
+    return Spin(found.generators.geometry.curvature, found.a, found.b, found.reverses)  # type: ignore[arg-type]
 
 
 def _reach(cell: DirichletCell, length: float) -> float:
@@ -197,8 +199,8 @@ def _partners(tree: cKDTree, wanted: Spin, length: Floats, lengths: Floats) -> I
 
 
 def _listed(found: Elements, number: Ints, length: Floats, label: Ints) -> LengthSpectrum:
-    """One element of each class, that of the fewest steps, by length."""
-    order = np.lexsort((found.depth[number], label))
+    """One element of each class, that which moves the origin least, by length."""
+    order = np.lexsort((np.abs(found.b[number]), label))
     first = order[np.unique(label[order], return_index=True)[1]]
     first = first[np.argsort(length[first], kind="stable")]
     gaps = np.diff(length[first])
@@ -210,7 +212,15 @@ def _listed(found: Elements, number: Ints, length: Floats, label: Ints) -> Lengt
         _primitive(spin, length, first),
         spin.reverses[first],
         tuple(found.word(int(number[k])) for k in first),
+        _spread(length, label),
     )
+
+
+def _spread(value: Floats, label: Ints) -> float:
+    """The largest difference of two values with one label."""
+    order = np.lexsort((value, label))
+    starts = np.flatnonzero(np.diff(label[order], prepend=-1))
+    return float(max(np.ptp(part) for part in np.split(value[order], starts[1:]))) if len(value) else 0.0
 
 
 def _primitive(spin: Spin, length: Floats, first: Ints) -> Bools:

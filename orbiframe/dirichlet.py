@@ -26,20 +26,28 @@ _SAME = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class DirichletCell:
-    """The points x of X with d(x, 0) <= d(x, g 0) for all g in a group, by the elements g whose bisectors bound it.
+class Generators:
+    """Elements that generate a group, with their inverses among them: those across the sides of a cell.
 
-    Its tiles have what the walk from tile to tile needs: whoever crosses the side of g comes nearer to g 0. So every
-    tile but the first has a neighbour whose centre is nearer to the origin. No element but the identity may fix the
-    origin. spin: (m,), the elements; letters: m words for them in the letters of the group; mate: (m,), the inverse of
-    each. The first `side_count` elements have sides, counterclockwise, those after it are inverses that rounding left
-    out, and in S^2 all elements are there.
+    spin: (m,), the elements; letters: m words for them in the letters of the group; mate: (m,), the number of the
+    inverse of each.
     """
 
     geometry: Geometry
     spin: Spin
     letters: tuple[Letters, ...]
     mate: Ints
+
+
+@dataclass(frozen=True, eq=False)
+class DirichletCell(Generators):
+    """The points x of X with d(x, 0) <= d(x, g 0) for all g in a group, by the elements g whose bisectors bound it.
+
+    Whoever crosses the side of g comes nearer to g 0. So every tile but the first has a neighbour whose centre is
+    nearer to the origin. No element but the identity may fix the origin. The first `side_count` elements have sides,
+    counterclockwise; those after it are inverses that rounding left out. In S^2 all elements are there.
+    """
+
     side_count: int
 
     @cached_property
@@ -70,7 +78,7 @@ def dirichlet_cell(group: Group) -> DirichletCell:
     fix the origin.
     """
     geometry = group.geometry
-    spin, letters = _transitions(group)
+    spin, letters = lettered_pairings(group)
     if geometry.curvature > 0:
         while len((grown := _distinct(*_with_products(spin, letters)))[1]) > len(letters):
             spin, letters = grown
@@ -89,8 +97,8 @@ def dirichlet_cell(group: Group) -> DirichletCell:
     )
 
 
-def _transitions(group: Group) -> tuple[Spin, list[Letters]]:
-    """The side pairings and the letter of each."""
+def lettered_pairings(group: Group) -> tuple[Spin, list[Letters]]:
+    """The side pairings and the letter of each. Raises GeometryError for one that is no generator."""
     atlas, names = group.atlas(), {abs(letter) for letter in group.word.letters}
     pairings = group.pairings()
     matrices, letters = pairings.matrix, list[Letters]()

@@ -9,7 +9,7 @@ from numba import njit
 # number of the side decides. Whoever is this near to the limit itself cannot be told from a tie.
 TIE = 1e-10
 _UNSURE = 1e-13
-DONE, TIED, ON_RIM = 0, 1, 2  # how a walk ended
+DONE, TIED, ON_RIM, MANY = 0, 1, 2, 3  # how a walk ended
 
 
 @njit(cache=True, inline="always")
@@ -41,6 +41,38 @@ def _parent_side(x0, x1, x2, covectors, size, heights):  # type: ignore[no-untyp
 
 
 @njit(cache=True, inline="always")
+def _clearly_beyond(x0, x1, x2, side, covectors, rivals, rival_count, size):  # type: ignore[no-untyped-def]
+    """Whether x is beyond a side, and farther than beyond the sides whose lines cross it, with no tie in sight."""
+    margin = 2 * TIE * size * (abs(x0) + abs(x1) + abs(x2))
+    height = covectors[side, 0] * x0 + covectors[side, 1] * x1 + covectors[side, 2] * x2 - margin
+    if height < 0:
+        return False
+    for k in range(rival_count[side]):
+        s = rivals[side, k]
+        if covectors[s, 0] * x0 + covectors[s, 1] * x1 + covectors[s, 2] * x2 > height:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _rivals(k, covectors, bounding):  # type: ignore[no-untyped-def]
+    """For every side the sides with a point of X, or nearly one, beyond both: no other matters for points beyond it.
+
+    Of lines that bound a polygon and do not cross no point lies beyond both; from number `bounding` on they bound none.
+    """
+    sides = len(covectors)
+    rivals, count = np.empty((sides, sides), dtype=np.int64), np.zeros(sides, dtype=np.int64)
+    for s in range(sides):
+        for t in range(sides):
+            c = np.cross(covectors[s], covectors[t])
+            rim = c[1] * c[1] + c[2] * c[2]
+            if s != t and (k >= 0 or max(s, t) >= bounding or c[0] * c[0] > rim * (1 - 1e-6)):
+                rivals[s, count[s]] = t
+                count[s] += 1
+    return rivals, count
+
+
+@njit(cache=True, inline="always")
 def _put(tree, n, a, b, reverses, parent, step):  # type: ignore[no-untyped-def]
     tree[0][n], tree[1][n], tree[2][n] = a, b, reverses
     tree[3][n], tree[4][n] = parent, step
@@ -67,14 +99,14 @@ def _longer(tree, count):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def grow(k, generators, mate, covectors, reach, rim, depth, room):  # type: ignore[no-untyped-def]
+def grow(k, generators, mate, covectors, bounding, reach, rim, depth, room, most):  # type: ignore[no-untyped-def]
     """All elements with |b|^2 <= reach and at most `depth` steps from the identity, breadth first.
 
     k: curvature; generators: a, b, reverses of the elements across the sides; covectors: (m, 3), see
-    `DirichletCell.bisectors`, where the image of the origin under the inverse of g lies beyond side s, g times
-    generator s is nearer to the identity. A product g h is kept if its parent is g, so no element comes twice and none
-    is looked up. Stops at an element for which rounding would decide: with |b|^2 within `rim` of the reach, relative,
-    or with two sides between a tie and no tie.
+    `DirichletCell.bisectors`, the first `bounding` of them bound the cell. Where the image of the origin under the
+    inverse of g lies beyond side s, g times generator s is nearer to the identity. A product g h is kept if its parent
+    is g, so no element comes twice and none is looked up. Stops at an element for which rounding would decide: with |b|^2 within `rim` of the reach, relative,
+    or with two sides between a tie and no tie; and where there are more than `most` elements.
 
     Returns the elements a, b, reverses, and for each its parent and the last generator, (room,), -1 for the identity;
     their number; and how the walk ended.
@@ -83,6 +115,7 @@ def grow(k, generators, mate, covectors, reach, rim, depth, room):  # type: igno
     sides, count, end, level = len(mate), 1, 1, 0
     tree, heights = _empty(max(room, 2 * sides + 2)), np.empty(sides)
     size = np.abs(covectors).max() if sides else 1.0
+    rivals, rival_count = _rivals(k, covectors, bounding)
     _put(tree, 0, 1.0 + 0.0j, 0.0 + 0.0j, False, -1, -1)
     n = 0
     while n < count:
@@ -90,6 +123,8 @@ def grow(k, generators, mate, covectors, reach, rim, depth, room):  # type: igno
             level, end = level + 1, count
         if level == depth:
             break
+        if count > most:
+            return tree, count, MANY
         if count + sides > len(tree[0]):
             tree = _longer(tree, len(tree[0]))
         back = mate[tree[4][n]] if n else -1
@@ -106,7 +141,9 @@ def grow(k, generators, mate, covectors, reach, rim, depth, room):  # type: igno
             # The image of the origin under the inverse, which is (conj a, -b), or (a, -conj b) if it reverses.
             x = -2 * a * b.conjugate() if reverses else -2 * a.conjugate() * b
             x0 = a.real * a.real + a.imag * a.imag - k * square
-            side = _parent_side(x0, x.real, x.imag, covectors, size, heights)
+            side = mate[s]
+            if not _clearly_beyond(x0, x.real, x.imag, side, covectors, rivals, rival_count, size):
+                side = _parent_side(x0, x.real, x.imag, covectors, size, heights)
             if side == -2:
                 return tree, n + 1, TIED
             if side == mate[s]:
