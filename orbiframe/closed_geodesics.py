@@ -66,9 +66,10 @@ def length_spectrum(group: Group, up_to: float) -> LengthSpectrum:
     A closed geodesic runs through the Dirichlet cell, so that some element of its class has an axis that meets the
     cell: it moves the origin by d with cosh(d/2) <= cosh(R) cosh(L/2) at most, R the circumradius of the cell. Two such
     elements are conjugate if and only if one follows from the other by moving along the axis from tile to tile. In E^2
-    parallel closed geodesics are one class, in S^2 those of the projective plane are. Raises GeometryError where rounding
-    decides: where the conjugates of an element are not found, lengths of one class differ by more than 1e-8, or those
-    of two by less than 1e-6 and more than that; and where there are too many elements.
+    parallel closed geodesics are one class, in S^2 those of the projective plane are.
+
+    Raises GeometryError where rounding decides: where the conjugates of an element are not found, lengths of one class
+    differ by more than 1e-8, or those of two by less than 1e-6 and more than that; and for too many elements.
     """
     return _spectrum(group, dirichlet_cell(group), up_to)
 

@@ -105,8 +105,10 @@ def grow(k, generators, mate, covectors, bounding, reach, rim, depth, room, most
     k: curvature; generators: a, b, reverses of the elements across the sides; covectors: (m, 3), see
     `DirichletCell.bisectors`, the first `bounding` of them bound the cell. Where the image of the origin under the
     inverse of g lies beyond side s, g times generator s is nearer to the identity. A product g h is kept if its parent
-    is g, so no element comes twice and none is looked up. Stops at an element for which rounding would decide: with |b|^2 within `rim` of the reach, relative,
-    or with two sides between a tie and no tie; and where there are more than `most` elements.
+    is g, so no element comes twice and none is looked up.
+
+    Stops at an element for which rounding would decide: with |b|^2 within `rim` of the reach, relative, or with two
+    sides between a tie and no tie; and where there are more than `most` elements.
 
     Returns the elements a, b, reverses, and for each its parent and the last generator, (room,), -1 for the identity;
     their number; and how the walk ended.

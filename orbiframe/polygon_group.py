@@ -49,9 +49,10 @@ class PolygonGroup(Group):
         return np.asarray(self.polygon.pairings[self.word.generator_side(label)])
 
     def pairings(self) -> Spin:
-        """The side pairings from the flags in the middle of the sides, which lie half as far as their images."""
+        """The side pairings, from flags in the middle of the sides; no large matrix loses their digits."""
         k, size = self.geometry.curvature, len(self.word)
-        flags = Spin.of_matrix(k, self.polygon.side_flags)
+        middle, head = (Spin.translation(k, x) for x in (self.polygon.side_flags[..., 0], self.polygon.heads))
+        flags = middle @ Spin.rotation(k, (middle.inverse @ head).direction)
         parallel = np.array([self.word.reverses(side) for side in range(size)])
         swap = Spin.rotation(k, np.where(parallel, 0.0, np.pi), parallel)
         return flags @ swap @ flags[np.array(self.word.mate)].inverse
