@@ -15,6 +15,7 @@ def orbiframe_components() -> list[Component]:
         Component(
             "command", "group", "orbiframe.cli.group:configure", "describe, measure and draw a group from a word"
         ),
+        Component("command", "draw", "orbiframe.cli.draw:configure", "draw the tessellation and the surface of a mesh"),
         Component(
             "command", "plugins", "orbiframe.cli.plugins:configure", "list the installed components or check one"
         ),

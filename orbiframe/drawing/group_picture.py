@@ -15,7 +15,8 @@ from orbiframe.drawing.colours import GREY, INK, PAPER, line_colour, mixed, tint
 from orbiframe.drawing.file import require_picture_file, save_picture
 from orbiframe.drawing.function_image import Function, function_image
 from orbiframe.drawing.models import Chart, Model, Solid, model_of
-from orbiframe.drawing.picture import Curve, Item, Label, Picture, Shape, arrowhead, circle, polygon
+from orbiframe.drawing.page import Page
+from orbiframe.drawing.picture import Curve, Item, Label, Picture, Shape, arrowhead, circle
 from orbiframe.drawing.tiles import Tiles, nearest_tiles, tiles_within
 from orbiframe.errors import UsageError
 from orbiframe.group import Group
@@ -23,8 +24,6 @@ from orbiframe.word import text_of
 
 Floats = NDArray[np.float64]
 
-WIDTH = 400.0  # of the window, in points
-MARGIN = 4.0
 TILES = {-1: 450, 0: 60, 1: 2}
 _SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 # Widths of lines go with the square root of the size of a tile on the page, from the thickest to the thinnest.
@@ -101,50 +100,16 @@ class GroupPicture:
 
     def picture(self) -> Picture:
         """The items in the order of drawing."""
-        half = WIDTH / 2 + MARGIN
-        drawn = [*self._background(), *self._tiles(), *self._sides(), *self._rim(), *self._labels()]
-        items = [item for item in drawn if not isinstance(item, Shape) or len(item.paths)]
-        return Picture(tuple(items), (-half, -half, half, half))
+        return self.page.picture([*self._background(), *self._tiles(), *self._sides(), *self._rim(), *self._labels()])
 
     @cached_property
-    def scale(self) -> float:
-        """Points of the page for a unit of the model."""
-        return WIDTH / 2 / self.half_width
-
-    @cached_property
-    def half_width(self) -> float:
-        """Half the width of the window in units of the model."""
-        boundary = self.model.boundary()
-        if boundary:
-            return float(max(np.abs(curve.points - self.middle).max() for curve in boundary))
-        return 2.2 * float(np.linalg.norm(self.model.place(self.cell.corners), axis=1).max())
-
-    @cached_property
-    def middle(self) -> Floats:
-        """The middle of the window in units of the model."""
-        boundary = self.model.boundary()
-        points = (
-            np.concatenate([curve.at(np.linspace(0, 1, 25)) for curve in boundary]) if boundary else np.zeros((1, 2))
-        )
-        return np.asarray((points.min(axis=0) + points.max(axis=0)) / 2)
-
-    @cached_property
-    def window(self) -> tuple[Curve, ...]:
-        """What the tiles are clipped to: the boundary of the model, or a square."""
-        boundary = self.model.boundary()
-        square = WIDTH / 2 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
-        return tuple(self._on_page(curve) for curve in boundary) if boundary else tuple(polygon(square))
-
-    def _on_page(self, curve: Curve) -> Curve:
-        return curve.placed(self.scale, -self.scale * self.middle)
-
-    def _place(self, x: Floats) -> Floats:
-        return np.asarray((self.model.place(x) - self.middle) * self.scale)
+    def page(self) -> Page:
+        """The model on the page."""
+        return Page(self.model, 2.2 * float(np.linalg.norm(self.model.place(self.cell.corners), axis=1).max()))
 
     def _background(self) -> Iterator[Item]:
         if self.function is not None:
-            half = WIDTH / 2
-            yield function_image(self.function, lambda p: self.model.points(p / self.scale + self.middle), half)
+            yield function_image(self.function, self.page.points, self.page.width / 2)
 
     @cached_property
     def _corners(self) -> Floats:
@@ -154,7 +119,7 @@ class GroupPicture:
     @cached_property
     def _sizes(self) -> Floats:
         """The extent of every tile on the page, in points."""
-        at = self._place(self._corners)
+        at = self.page.place(self._corners)
         return np.asarray((at.max(axis=1) - at.min(axis=1)).max(axis=1))
 
     @cached_property
@@ -170,16 +135,12 @@ class GroupPicture:
         for fill, width in sorted(set(styles), key=lambda style: (-style[1], style[0])):
             chosen = [k for k, style in enumerate(styles) if style == (fill, width)]
             shade = None if self.function is not None else fill
-            paths = self._paths(self._corners[chosen])
-            yield Shape(paths, True, shade, INK, width, clip=self.window)
+            paths = self.page.paths(self._corners[chosen])
+            yield Shape(paths, True, shade, INK, width, clip=self.page.window)
         if self.motif:
             elements = self.tiles.elements[self._sizes > _MOTIF_LEAST]
-            motifs = self._paths(np.einsum("kij,mj->kmi", elements, self.cell.motif))
-            yield Shape(motifs, True, fill=INK, opacity=0.55, clip=self.window)
-
-    def _paths(self, corners: Floats, closed: bool = True) -> list[list[Curve]]:
-        """The polygons (n, m, 3), or chains of geodesics, on the page."""
-        return [[self._on_page(curve) for curve in path] for path in self.model.paths(corners, closed)]
+            motifs = self.page.paths(np.einsum("kij,mj->kmi", elements, self.cell.motif))
+            yield Shape(motifs, True, fill=INK, opacity=0.55, clip=self.page.window)
 
     def _fill(self, tile: int) -> str:
         """Paper for F; the colours of the first sides for the others, stronger and weaker in turn."""
@@ -192,12 +153,12 @@ class GroupPicture:
     def _sides(self) -> Iterator[Item]:
         """The sides of F, thick and in the colours of their letters, with arrows."""
         for letter, pieces in zip(self.cell.letters, self.cell.sides, strict=True):
-            curves = self._paths(np.concatenate([pieces[:, 0], pieces[-1:, 1]])[None], closed=False)
+            curves = self.page.paths(np.concatenate([pieces[:, 0], pieces[-1:, 1]])[None], closed=False)
             yield Shape(curves, stroke="#ffffff", width=4.2)
             yield Shape(curves, stroke=self._colour(letter), width=2.4)
             if curves:
                 yield self._arrow(curves[0], letter)
-        corners = self._place(self.cell.corners[:: self.cell.pieces])
+        corners = self.page.place(self.cell.corners[:: self.cell.pieces])
         dots = [list(circle(corner, 2.2)) for corner in corners]
         yield Shape(dots, True, fill=INK)
 
@@ -218,27 +179,27 @@ class GroupPicture:
     @cached_property
     def _letter_size(self) -> float:
         """The size of letters, smaller where a polygon has many sides."""
-        corners = self._place(self.cell.corners)
+        corners = self.page.place(self.cell.corners)
         side = float(np.linalg.norm(corners - np.roll(corners, -1, axis=0), axis=1).min())
         return float(np.clip(side / 4, 7.0, 14.0))
 
     def _rim(self) -> Iterator[Item]:
         if self.model.boundary():
-            yield Shape([self.window], True, stroke=INK, width=1.0)
+            yield Shape([self.page.window], True, stroke=INK, width=1.0)
             if isinstance(self.model, Solid) and self.cell.geometry.curvature < 0:
                 heights = np.cosh(np.arange(1.0, np.arccosh(self.model.height)))
-                levels = [[self._on_page(self.model.level(float(height)))] for height in heights]
+                levels = [[self.page.on_page(self.model.level(float(height)))] for height in heights]
                 yield Shape(levels, stroke=GREY, width=0.4, dash=(2.0, 2.5))
         elif isinstance(self.model, Chart):
-            yield Shape([self.window], True, stroke=INK, width=0.6)
+            yield Shape([self.page.window], True, stroke=INK, width=0.6)
 
     def _labels(self) -> Iterator[Item]:
         """Letters inside F, beside the middles of their sides."""
-        centre = self._place(self.cell.geometry.origin)
+        centre = self.page.place(self.cell.geometry.origin)
         for letter, middle in zip(self.cell.letters, self.cell.middles, strict=True):
             if not len(self.model.front(middle[None], False)):
                 continue
-            at = self._place(middle)
+            at = self.page.place(middle)
             inward = (centre - at) / np.linalg.norm(centre - at)
             size = self._letter_size
             name = text_of(abs(letter)).translate(_SUBSCRIPTS)

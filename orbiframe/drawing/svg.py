@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 
 # In points: coordinates are rounded to this many decimals, and flatter arcs than this become segments.
 _DECIMALS = 2
-_FLAT = 0.01
+_FLAT = 0.03
 
 
 def svg_text(picture: Picture) -> str:
