@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ from orbiframe.registry import Registry
 
 if TYPE_CHECKING:
     from orbiframe.config import Config
+    from orbiframe.pipeline import Result
     from orbiframe.polyhedron import Polyhedron
 
 
@@ -21,7 +23,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
     add("mesh", metavar="MESH", type=Path, help="a closed mesh, orientable or not, of any genus")
-    add("-o", "--output", metavar="OUT", type=Path, required=True, help="the smooth surface as a fine triangle mesh")
+    add("-o", "--output", metavar="OUT", type=Path, required=True, help="a fine mesh, or the exact surface as .step")
     add("--config", metavar="FILE.toml", type=Path, help="components and options of the steps")
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=200")
     add("--group", metavar="NAME", help="a named group, such as regular-polygon; else that of the mesh (group.method)")
@@ -52,9 +54,10 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     config.checked(registry)
     _require_destinations(args, config, registry)
     mesh = _repaired(args, config, registry) if repairs_asked(args) else args.mesh
-    result = pipeline.fit(mesh, config, registry, Progress(quiet=args.quiet))
+    progress = Progress(quiet=args.quiet)
+    result = pipeline.fit(mesh, config, registry, progress)
     if exact := _exact(args, config, registry):
-        formats.export(args.output, result.surface, registry)
+        _export(args.output, result, registry, progress)
     else:
         formats.write(args.output, result.output, registry)
     if args.save:
@@ -62,8 +65,20 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     if args.report:
         write_report(args.report, result.report)
     if not args.quiet:
-        print(json_text(result.report) if args.json else summary(result.report, exact=exact))
+        written = args.output.stat().st_size if exact else None
+        print(json_text(result.report) if args.json else summary(result.report, exact=written))
     return 0
+
+
+def _export(path: Path, result: Result, registry: Registry, progress: Progress) -> None:
+    """Write the surface itself, which takes seconds where it has thousands of patches."""
+    from orbiframe import formats
+
+    progress("export", None)
+    start = time.perf_counter()
+    formats.export(path, result.surface, registry)
+    result.report["seconds"]["export"] = round(time.perf_counter() - start, 4)
+    progress("export", result.report["seconds"]["export"])
 
 
 def _repaired(args: argparse.Namespace, config: Config, registry: Registry) -> Polyhedron:

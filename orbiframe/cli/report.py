@@ -32,12 +32,12 @@ def json_text(report: Mapping[str, Any]) -> str:
     return json.dumps(plain(report), indent=2, allow_nan=False)
 
 
-def summary(report: Mapping[str, Any], *, exact: bool = False) -> str:
-    """A report in a few lines; exact: the surface itself was written, and not a mesh on it."""
+def summary(report: Mapping[str, Any], *, exact: int | None = None) -> str:
+    """A report in a few lines; exact: the bytes of the file where the surface itself was written, and no mesh on it."""
     return "\n".join(f"{name:<10}{words}" for name, words in _lines(report, exact))
 
 
-def _lines(report: Mapping[str, Any], exact: bool) -> Iterator[tuple[str, str]]:
+def _lines(report: Mapping[str, Any], exact: int | None) -> Iterator[tuple[str, str]]:
     surface, group, mapped, fit, out = (report[key] for key in ("surface", "group", "map", "fit", "output"))
     yield "surface", f"{surface['name']} (Euler characteristic {surface['euler_characteristic']})"
     cut = report["triangles"]
@@ -59,7 +59,8 @@ def _lines(report: Mapping[str, Any], exact: bool) -> Iterator[tuple[str, str]]:
         yield "faces", _shapes(faces) + (f" (before: {_shapes(faces['before'])})" if faces["before"] else "")
     yield "fit", f"{fit['basis']}, {fit['size']} functions, {fit['samples']} samples"
     yield "error", f"rms {fit['rms']:.2e}, max {fit['max']:.2e} of the bounding-box diagonal"
-    yield "output", "exact rational patches" if exact else f"{out['vertices']} vertices, {out['faces']} faces"
+    mesh = f"{out['vertices']} vertices, {out['faces']} faces"
+    yield "output", mesh if exact is None else f"exact rational patches, {exact / 1e6:.2g} MB"
     stages = ", ".join(f"{stage} {seconds:.1f}" for stage, seconds in report["seconds"].items())
     yield "seconds", f"{sum(report['seconds'].values()):.1f} ({stages})"
 

@@ -91,6 +91,13 @@ def test_every_suffix_is_in_the_table_of_formats(registry):
         assert suffixes == {suffix for declared in both for suffix in declared}
 
 
+def test_every_exporter_is_in_the_table_of_exact_formats(registry):
+    rows = table_rows(section(REFERENCE / "formats.md", "Exact formats"))
+    shown = [(unquoted(name), tuple(unquoted(suffixes).split()), unquoted(needs)) for name, suffixes, needs, _ in rows]
+    declared = [(c.name, c.suffixes, c.extra or "–") for c in registry.components("exporter")]
+    assert sorted(shown) == sorted(declared)
+
+
 COLUMNS = {"normals": 4, "colors": 5, "face_colors": 6}
 
 
