@@ -41,13 +41,13 @@ class Systole:
 class LengthSpectrum:
     """Closed geodesics of X/H: conjugacy classes of the group, a class and its inverse counted once, by length.
 
-    length: (n,), rising; primitive: (n,), runs once through its curve; one_sided: (n,), going round it reverses
+    length: (n,), rising; power: (n,), how often it runs through a shorter one, 1 for a primitive class; one_sided: (n,), going round it reverses
     orientation; word: n words in the letters of the group, one of each class; error: the largest difference between the
     lengths of two elements of one class, which is what rounding has done.
     """
 
     length: Floats
-    primitive: Bools
+    power: Ints
     one_sided: Bools
     word: tuple[tuple[int, ...], ...]
     error: float
@@ -210,7 +210,7 @@ def _listed(found: Elements, number: Ints, length: Floats, label: Ints) -> Lengt
     spin = found.spin(number)
     return LengthSpectrum(
         length[first],
-        _primitive(spin, length, first),
+        _powers(spin, length, first),
         spin.reverses[first],
         tuple(found.word(int(number[k])) for k in first),
         _spread(length, label),
@@ -224,20 +224,25 @@ def _spread(value: Floats, label: Ints) -> float:
     return float(max(np.ptp(part) for part in np.split(value[order], starts[1:]))) if len(value) else 0.0
 
 
-def _primitive(spin: Spin, length: Floats, first: Ints) -> Bools:
-    """Whether an element has no root in the group: one with the same axis and a fraction of its length."""
+def _powers(spin: Spin, length: Floats, first: Ints) -> Ints:
+    """How many times some elements run through the shortest element with the same axis: 1 for those without a root."""
     if spin.curvature > 0:
-        return np.ones(len(first), dtype=np.bool_)
+        return np.ones(len(first), dtype=np.intp)
     order = np.argsort(length)
-    line = axes(spin)
-    primitive = np.ones(len(first), dtype=np.bool_)
+    rising, line = length[order], axes(spin)
+    power = np.ones(len(first), dtype=np.intp)
     for row, k in enumerate(first):
-        for power in range(2, int(length[k] / length[order[0]] + _EQUAL) + 1):
-            low, high = np.searchsorted(length[order], length[k] / power + np.array([-_EQUAL, _EQUAL]))
+        for p in range(2, int(length[k] / rising[0] + _EQUAL) + 1):
+            low, high = np.searchsorted(rising, length[k] / p + np.array([-_EQUAL, _EQUAL]))
             roots = order[low:high]
-            roots = roots[(spin.reverses[roots] & (power % 2 == 1)) == spin.reverses[k]]
-            columns = slice(1 if spin.curvature == 0 and not spin.reverses[k] else 0, 3)
-            same = [np.abs(line[roots] - sign * line[k])[:, columns].max(axis=1, initial=0.0) for sign in (1, -1)]
-            if (np.minimum(*same) < _SAME * np.abs(line[k]).max()).any():
-                primitive[row] = False
-    return primitive
+            roots = roots[(spin.reverses[roots] & (p % 2 == 1)) == spin.reverses[k]]
+            if _one_axis(line[roots], line[k], spin.curvature == 0 and not spin.reverses[k]).any():
+                power[row] = p
+    return power
+
+
+def _one_axis(lines: Floats, line: Floats, parallel: bool) -> Bools:
+    """Which lines (n, 3) are the line (3,), or only parallel to it in E^2; covectors have one sign or the other."""
+    columns = slice(int(parallel), 3)
+    apart = [np.abs(lines - sign * line)[:, columns].max(axis=1, initial=0.0) for sign in (1, -1)]
+    return np.asarray(np.minimum(*apart) < _SAME * np.abs(line).max())
