@@ -132,16 +132,16 @@ def has_exact_patches(basis: object) -> bool:
 def patches_of(surface: OrbifoldSurface) -> TrianglePatches | PeriodicPatch:
     """The exact patches of a surface of piecewise polynomials: triangles, or one periodic patch of a tensor product.
 
-    Raises FitError for functions that are no piecewise polynomials, or none that have exact patches, and where a weight
-    is not positive.
+    Raises FitError for other functions, polynomials of odd degree that are not divided by W, and where a weight is not
+    positive.
     """
     if isinstance(surface.basis, TensorBasis):
         return periodic_patch(surface, surface.basis)
     if isinstance(surface.basis, ElementBasis):
         return triangle_patches(surface, surface.basis)
     raise FitError(
-        f"the functions of '{surface.basis_name or type(surface.basis).__name__}' are no piecewise polynomials, so the "
-        "surface has no exact patches; choose a spline basis such as ps2 or ps6, or write a mesh"
+        f"the functions of '{surface.basis_name or type(surface.basis).__name__}' are neither polynomials on triangles "
+        "nor tensor products, so the surface has no exact patches; choose --basis ps2 or ps6, or write a mesh"
     )
 
 

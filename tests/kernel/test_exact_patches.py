@@ -135,7 +135,7 @@ def test_signs_undo_turned_faces(name):
 
 
 def test_functions_without_patches_are_refused():
-    with pytest.raises(FitError, match="no piecewise polynomials"):
+    with pytest.raises(FitError, match="neither polynomials on triangles nor tensor products"):
         patches_of(surface_of("tetrahedron", "gaussian", size=30))
 
 
