@@ -143,19 +143,16 @@ class Geodesics:
     def closed(self, deck: ArrayLike | Spin, patch: int = 0) -> ClosedGeodesic:
         """The shortest closed curve in the class of a deck transformation, a matrix (3, 3), seen from a patch.
 
-        In a named group `group.element(word)` is the deck transformation of a loop. Raises GeometryError for the
-        identity and other isometries with a fixed point, whose loops can be contracted or run round a singular point.
+        In a named group `group.element_spin(word)` is the deck transformation of a loop, as a `Spin`. Raises
+        GeometryError for the identity and other isometries with a fixed point, whose loops can be contracted or run
+        round a singular point.
         """
-        k = self.geometry.curvature
-        spin = deck if isinstance(deck, Spin) else Spin.of_matrix(k, np.asarray(deck, dtype=float)[None])
+        spin = deck if isinstance(deck, Spin) else Spin.of_matrix(self.geometry.curvature, deck)
+        spin = Spin(spin.curvature, np.reshape(spin.a, 1), np.reshape(spin.b, 1), np.reshape(spin.reverses, 1))
         length = float(translation_lengths(spin)[0])
         if not length > _BEYOND:
             raise GeometryError("a deck transformation with a fixed point has no closed geodesic; give a longer word")
-        foot = self.geometry.origin if k > 0 else _foot(self.geometry, axes(spin)[0])
-        ahead = self.geometry.log(foot, self.geometry.act(spin.matrix[0], foot))
-        if k > 0:
-            ahead = np.array([0.0, 1.0, 0.0])
-        at, flag = self._at_home(np.array([patch]), self.geometry.flag(foot, ahead)[None])
+        at, flag = self._at_home(np.array([patch]), _axis_flag(self.geometry, spin)[None])
         return ClosedGeodesic(self, length, bool(spin.reverses[0]), Points(at, flag[..., 0]), flag[..., 1])
 
     def nearest_lift(self, x: Points, y: Points) -> Floats:
@@ -250,7 +247,16 @@ def _ragged(first: Ints, last: Ints) -> tuple[Ints, Ints]:
     return row, np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count) + np.repeat(first, count)
 
 
-def _foot(geometry: Geometry, axis: Floats) -> Floats:
-    """The point of an axis nearest to the origin."""
-    height = axis[0]
-    return geometry.project(np.array([1 - geometry.curvature * height**2, -height * axis[1], -height * axis[2]]))
+def _axis_flag(geometry: Geometry, spin: Spin) -> Floats:
+    """The isometry that takes the origin to the nearest point of the axis, and (0, 1, 0) to the way things move there.
+
+    For the antipodal map every great circle is an axis; the one through the origin in the direction (0, 1, 0).
+    """
+    k = geometry.curvature
+    if k > 0:
+        return np.eye(3)
+    height, *normal = axes(spin)[0]
+    foot = geometry.project(np.array([1 - k * height**2, *(-height * np.array(normal))]))
+    along = geometry.turn(foot, np.array([k * height, *normal]))
+    moved = geometry.log(foot, geometry.act(spin.matrix[0], foot))
+    return geometry.flag(foot, along * np.sign(geometry.inner(along, moved)))

@@ -49,16 +49,23 @@ class Group(ABC):
         """The transitions of `atlas()` without the identity, as pairs of complex numbers, (n,)."""
         return Spin.of_matrix(self.geometry.curvature, self.atlas().isometry[1:])
 
+    def generator_spin(self, label: int) -> Spin:
+        """The isometry that a label of the word stands for, as a pair of complex numbers."""
+        return Spin.of_matrix(self.geometry.curvature, self.generator(label))
+
     def element(self, letters: str | tuple[int, ...]) -> Floats:
         """The isometry of a word in the generators, (3, 3), upper case for inverses; "" is the identity.
 
         Raises GeometryError for a letter that the group does not have.
         """
-        k = self.geometry.curvature
-        product = Spin.of_matrix(k, np.eye(3))
+        return self.element_spin(letters).matrix
+
+    def element_spin(self, letters: str | tuple[int, ...]) -> Spin:
+        """The same as a pair of complex numbers, which keeps the digits that a large matrix loses."""
+        product = Spin.of_matrix(self.geometry.curvature, np.eye(3))
         for letter in parse_letters(letters) if isinstance(letters, str) else letters:
             if letter not in self.word.letters and -letter not in self.word.letters:
                 raise GeometryError(f"letter {letter} is no generator; the generators are the letters of '{self.word}'")
-            g = Spin.of_matrix(k, self.generator(abs(letter)))
+            g = self.generator_spin(abs(letter))
             product = product @ (g if letter > 0 else g.inverse)
-        return product.matrix
+        return product

@@ -48,8 +48,17 @@ class PolygonGroup(Group):
         """The pairing of `word.generator_side(label)`."""
         return np.asarray(self.polygon.pairings[self.word.generator_side(label)])
 
+    def generator_spin(self, label: int) -> Spin:
+        """The pairing of `word.generator_side(label)`."""
+        return self.pairings()[self.word.generator_side(label)]
+
     def pairings(self) -> Spin:
-        """The side pairings, from flags in the middle of the sides; no large matrix loses their digits."""
+        """The side pairings, with all digits."""
+        return self._pairings
+
+    @cached_property
+    def _pairings(self) -> Spin:
+        """From flags in the middle of the sides; no large matrix loses their digits."""
         k, size = self.geometry.curvature, len(self.word)
         middle, head = (Spin.translation(k, x) for x in (self.polygon.side_flags[..., 0], self.polygon.heads))
         flags = middle @ Spin.rotation(k, (middle.inverse @ head).direction)

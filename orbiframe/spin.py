@@ -75,7 +75,7 @@ class Spin:
         product = self.a * a - self.curvature * self.b * b.conj(), self.a * b + self.b * a.conj()
         return Spin(self.curvature, *product, self.reverses ^ other.reverses)
 
-    def __getitem__(self, index: NDArray[np.intp] | NDArray[np.bool_]) -> Spin:
+    def __getitem__(self, index: int | slice | NDArray[np.intp] | NDArray[np.bool_]) -> Spin:
         """Some of the isometries."""
         return Spin(self.curvature, self.a[index], self.b[index], self.reverses[index])
 

@@ -31,7 +31,9 @@ def regular(text: str) -> PolygonGroup:
     return PolygonGroup(regular_polygon(H2, Word.parse(text)))
 
 
-@pytest.mark.parametrize(("text", "time", "up_to", "within"), [("abcdABCD", 0.8, 9.0, 1e-8), ("abABcdCD", 1.2, 9.5, 3e-6)])
+@pytest.mark.parametrize(
+    ("text", "time", "up_to", "within"), [("abcdABCD", 0.8, 9.0, 1e-8), ("abABcdCD", 1.2, 9.5, 3e-6)]
+)
 def test_the_trace_formula_holds(text: str, time: float, up_to: float, within: float) -> None:
     """Selberg 1956 for exp(-t lambda): eigenvalues on one side; area and closed geodesics, both ways, on the other."""
     heat = sum(count * np.exp(-time * value) for value, count in EIGENVALUES[text])
@@ -135,9 +137,15 @@ def test_the_sphere_has_no_systole() -> None:
         systole(FiniteGroup(S2, Word.parse("aA")))
 
 
-def test_lengths_that_rounding_decides_are_refused() -> None:
-    """A conjugate that is not found: the pairings of a polygon bent by 1e-6 obey no relation."""
+def bent(amount: float) -> PolygonGroup:
+    """Side pairings that obey the relation to `amount` only."""
     group = regular("abABcdCD")
-    group.polygon.__dict__["heads"] = group.polygon.heads * [1.0, 1.0 + 1e-6, 1.0]
-    with pytest.raises(GeometryError):
-        length_spectrum(group, 7.0)
+    group.polygon.__dict__["heads"] = group.polygon.heads * [1.0, 1.0 + amount, 1.0]
+    return group
+
+
+def test_the_error_shows_pairings_that_are_no_group() -> None:
+    assert length_spectrum(regular("abABcdCD"), 7.0).error < 1e-11
+    assert 1e-10 < length_spectrum(bent(1e-10), 7.0).error < 1e-7
+    with pytest.raises(GeometryError, match="Dirichlet cell"):
+        length_spectrum(bent(1e-6), 7.0)
