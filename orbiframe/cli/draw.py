@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from orbiframe.cli.destination import require_folder, require_other_file
 from orbiframe.cli.loops import MARKER
@@ -103,7 +103,7 @@ def _read(args: argparse.Namespace, registry: Registry) -> Polyhedron:
     return without_unused_vertices(formats.read(args.mesh, registry))
 
 
-def _middle(vertex: int | None, surface: OrbifoldSurface) -> tuple[int, object]:
+def _middle(vertex: int | None, surface: OrbifoldSurface) -> tuple[int, Any]:
     """The patch and the point in it that come into the middle of the picture."""
     if vertex is None:
         return 0, None
@@ -113,7 +113,7 @@ def _middle(vertex: int | None, surface: OrbifoldSurface) -> tuple[int, object]:
     return int(surface.triangulation.patch[vertex]), surface.triangulation.points[vertex]
 
 
-def _cut(args: argparse.Namespace, view: object, registry: Registry) -> Picture:
+def _cut(args: argparse.Namespace, view: Any, registry: Registry) -> Picture:
     from orbiframe.drawing.solid_picture import cut_picture
     from orbiframe.topology import require_closed_surface
 

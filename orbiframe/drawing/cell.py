@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 
 # The side of the letter F, which no isometry but the identity brings back: corners in a box from -1 to 1, and scale.
 _MOTIF = np.array([(-4, -6), (-2, -6), (-2, -1), (2, -1), (2, 1), (-2, 1), (-2, 4), (4, 4), (4, 6), (-4, 6)]) / 6
-_MOTIF_SIZE, _LARGEST_MOTIF = 0.34, 1.2
+_MOTIF_SIZE, _LARGEST_MOTIF = 0.34, 1.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -208,7 +208,7 @@ def model_of(geometry: Geometry, name: str | None = None) -> Model:
     chosen = name or ("sphere" if geometry.curvature > 0 else "conformal")
     solid = {-1: "hyperboloid", 1: "sphere"}.get(geometry.curvature)
     if chosen == solid:
-        return Solid(geometry) if geometry.curvature < 0 else Solid(geometry, elevation=0.6)
+        return Solid(geometry) if geometry.curvature < 0 else Solid(geometry, elevation=0.75)
     if chosen not in ("projective", "conformal"):
         own = ["projective", "conformal", *([solid] if solid else [])]
         raise UsageError(f"{geometry.name} has no model '{chosen}'; its models are {', '.join(own)}")

@@ -148,6 +148,11 @@ class Picture:
         items = tuple(item.placed(scale, shift) for item in self.items)
         return Picture(items, (float(left), float(bottom), float(right), float(top)))
 
+    def padded(self, margin: float) -> Picture:
+        """The same picture with a margin round it."""
+        left, bottom, right, top = self.box
+        return Picture(self.items, (left - margin, bottom - margin, right + margin, top + margin))
+
 
 def beside(pictures: Iterable[Picture], gap: float = 18.0) -> Picture:
     """Pictures in a row from left to right, in the middle of one height."""
@@ -161,6 +166,33 @@ def beside(pictures: Iterable[Picture], gap: float = 18.0) -> Picture:
         items.extend(placed.items)
         right = placed.box[2]
     return Picture(tuple(items), (0.0, 0.0, right, height))
+
+
+def chained(curves: Iterable[Curve]) -> list[list[Curve]]:
+    """Curves joined end to start into few long paths; a curve may be run through the other way."""
+    given = list(curves)
+    ends = [tuple(map(_spot, (curve.points[0], curve.points[-1]))) for curve in given]
+    at: dict[tuple[int, int], list[int]] = {}
+    for k, spots in enumerate(ends):
+        for spot in spots:
+            at.setdefault(spot, []).append(k)
+    free, paths = [True] * len(given), []
+    for first in range(len(given)):
+        path, here, k = [], ends[first][0], first if free[first] else -1
+        while k >= 0:
+            free[k] = False
+            forward = ends[k][0] == here
+            path.append(given[k] if forward else given[k].reversed)
+            here = ends[k][1] if forward else ends[k][0]
+            k = next((other for other in at[here] if free[other]), -1)
+        if path:
+            paths.append(path)
+    return paths
+
+
+def _spot(point: Floats) -> tuple[int, int]:
+    """A point to a hundredth of a point of the page, which is as fine as files are."""
+    return round(100 * float(point[0])), round(100 * float(point[1]))
 
 
 def circle(centre: ArrayLike, radius: float) -> tuple[Curve, Curve]:

@@ -14,8 +14,8 @@ from orbiframe.errors import PluginError
 
 Floats = NDArray[np.float64]
 
-_RESOLUTION = 144  # dots per inch
-_COLOURS = 256
+_RESOLUTION = 132  # dots per inch
+_COLOURS = 128
 # An arc becomes cubics of at most this angle; they are within 4e-6 of its radius.
 _STEP = np.pi / 4
 _MOVE, _LINE, _CUBIC, _CLOSE = 1, 2, 4, 79

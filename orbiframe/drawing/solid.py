@@ -19,11 +19,11 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 VIEW = (0.42, -0.72, 0.85)
-_PIXELS = 640  # along the longer side; colours are means of _FINE x _FINE samples
+_PIXELS = 600  # along the longer side; colours are means of _FINE x _FINE samples
 _FINE = 2
 _CLAY = np.array(channels("#c3d3e2"), dtype=np.float64)
 _LIGHT = np.array([-0.35, 0.55, 0.76])
-_AMBIENT, _SHADES = 0.42, 48
+_AMBIENT, _SHADES = 0.42, 36
 # A point of a line is hidden behind a surface that is nearer to the eye by this share of the extent.
 _BEHIND = 0.008
 _STEPS = 4  # points of a line for every sample of depth across which it runs
@@ -93,7 +93,7 @@ class Solid3D:
         return depth, brightness
 
     def _brightness(self) -> Floats:
-        """Of the corners of every triangle, (F, 3): alike in flat faces, by the normals of the vertices where smooth."""
+        """Of the corners of every triangle, (F, 3): by the normal of its face, or of the vertices where smooth."""
         x = self.polyhedron.vertices[self._triangles]
         face = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])
         normal = np.repeat(face[:, None], 3, axis=1)

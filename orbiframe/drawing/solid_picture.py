@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from orbiframe.diagonals import outline
 from orbiframe.drawing.colours import INK, line_colour
 from orbiframe.drawing.group_picture import group_picture
+from orbiframe.drawing.page import MARGIN
 from orbiframe.drawing.picture import Item, Label, Picture, Shape, beside
 from orbiframe.drawing.solid import VIEW, Solid3D
 from orbiframe.drawing.tessellation import Tessellation
@@ -22,7 +23,7 @@ Floats = NDArray[np.float64]
 View = tuple[float, float, float]
 
 _SPACE = 440.0  # width of a surface in space, in points
-_FINE = 40_000  # triangles of a smooth surface, or a few more
+_FINE = 30_000  # triangles of a smooth surface, or a few more
 
 
 def surface_picture(
@@ -30,7 +31,8 @@ def surface_picture(
 ) -> Picture:
     """The smooth surface with the images of the edges of its polyhedron, beside the tessellation of X (figure 11b).
 
-    tiling: the picture of the tessellation, by default as `tessellation_picture` makes it; polyhedron: whose triangles are `surface.refinement.coarse`; its own faces are shown, not the triangles.
+    polyhedron: whose triangles are `surface.refinement.coarse`; its own faces are shown, not the triangles; tiling: the
+    picture of the tessellation, by default as `tessellation_picture` makes it; view: from the surface to the eye.
     """
     coarse = surface.refinement.coarse
     density = max(int(np.sqrt(_FINE / coarse.face_count)), 1)
@@ -39,7 +41,7 @@ def surface_picture(
     drawn: list[Item] = [solid.image(), Shape(solid.lines(lines), stroke=line_colour(1), width=0.5)]
     if tiling is None:
         tiling = tessellation_picture(Tessellation.of_map(polyhedron, surface.refinement, surface.triangulation))
-    return beside([Picture(tuple(drawn), solid.box), tiling])
+    return beside([Picture(tuple(drawn), solid.box).padded(MARGIN), tiling])
 
 
 def _edge_chains(polyhedron: Polyhedron, coarse: Polyhedron, density: int) -> NDArray[np.intp]:
@@ -73,6 +75,5 @@ def cut_picture(marking: Marking, group: Group, *, view: View = VIEW) -> Picture
     for letter, halfedge in enumerate(marking.sides, start=1):
         middle = points[[marking.polyhedron.tail[halfedge], marking.polyhedron.head[halfedge]]].mean(axis=0)
         items.append(Label(text_of(letter), solid.place(middle[None])[0, :2], 13.0, line_colour(letter), halo=True))
-    drawn = [item for item in items if not isinstance(item, Shape) or len(item.paths)]
-    left, bottom, right, top = solid.box
-    return beside([Picture(tuple(drawn), (left - 4, bottom - 4, right + 4, top + 4)), group_picture(group, tiles=1)])
+    drawn = tuple(item for item in items if not isinstance(item, Shape) or len(item.paths))
+    return beside([Picture(drawn, solid.box).padded(MARGIN), group_picture(group, tiles=1)])

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from orbiframe.drawing.colours import GREY, INK, line_colour, tint
 from orbiframe.drawing.models import Model, model_of
 from orbiframe.drawing.page import WIDTH, Page
-from orbiframe.drawing.picture import Item, Picture, Shape
+from orbiframe.drawing.picture import Item, Picture, Shape, chained
 from orbiframe.drawing.tessellation import Copies, Tessellation
 
 Floats = NDArray[np.float64]
@@ -89,16 +89,20 @@ class _TessellationPicture:
         ends = self._edges(home=False)
         at = self.page.place(ends)
         length = np.linalg.norm(at[:, 1] - at[:, 0], axis=1)
-        seen = (np.abs(at) <= self.width / 2).all(axis=2).any(axis=1)
+        seen = (np.abs(at).max(axis=2) <= self.width / 2).any(axis=1)
         above = np.inf
         for least, width in _WIDTHS:
             chosen = seen & (length >= max(least, _SHORTEST)) & (length < above)
             above = least
-            yield Shape(self.page.paths(ends[chosen], closed=False), stroke=GREY, width=width, clip=self.page.window)
+            yield self._lines(ends[chosen], GREY, width)
 
     def _home_edges(self) -> Iterator[Item]:
-        paths = self.page.paths(self._edges(home=True), closed=False)
-        yield Shape(paths, stroke=_DARK, width=_HOME_WIDTH, clip=self.page.window)
+        yield self._lines(self._edges(home=True), _DARK, _HOME_WIDTH)
+
+    def _lines(self, ends: Floats, colour: str, width: float) -> Shape:
+        """Geodesics between points (n, 2, 3) in long strokes."""
+        curves = [curve for path in self.page.paths(ends, closed=False) for curve in path]
+        return Shape(chained(curves), stroke=colour, width=width, clip=self.page.window)
 
     def _edges(self, home: bool) -> Floats:
         """The edges of the copies at home or of the others, each once, (k, 2, 3)."""
