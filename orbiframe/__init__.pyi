@@ -64,6 +64,7 @@ from orbiframe.macro import (
 )
 from orbiframe.marked_group import MarkedGroup as MarkedGroup
 from orbiframe.marking import Marking as Marking, marking_along as marking_along
+from orbiframe.mirror_word import MirrorWord as MirrorWord, Relations as Relations, word_of as word_of
 from orbiframe.motion import Motion as Motion
 from orbiframe.orbifold import Orbifold as Orbifold
 from orbiframe.pipeline import fit as fit
@@ -77,6 +78,7 @@ from orbiframe.quotient import divide_jets as divide_jets
 from orbiframe.registry import Registry as Registry
 from orbiframe.samples import Samples as Samples
 from orbiframe.shared_edges import along_reference as along_reference, shared_normals as shared_normals
+from orbiframe.signature import Signature as Signature
 from orbiframe.sites import (
     lloyd as lloyd,
     poisson_disc as poisson_disc,
@@ -93,9 +95,17 @@ from orbiframe.spacing import (
     farthest_points as farthest_points,
     joining_edges as joining_edges,
 )
+from orbiframe.spherical_group import SphericalGroup as SphericalGroup
 from orbiframe.spin import Spin as Spin
 from orbiframe.surface import OrbifoldSurface as OrbifoldSurface
 from orbiframe.surface_file import load_surface as load_surface, save_surface as save_surface
+from orbiframe.symmetry_group import (
+    SymmetryGroup as SymmetryGroup,
+    orbifold_group as orbifold_group,
+    orbifold_of as orbifold_of,
+    stabilizer as stabilizer,
+)
+from orbiframe.symmetry_polygon import SymmetryPolygon as SymmetryPolygon, orbifold_cell as orbifold_cell
 from orbiframe.tensor_basis import TensorBasis as TensorBasis
 from orbiframe.topology import (
     SurfaceType as SurfaceType,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -38,13 +39,13 @@ class Copies:
 
 @dataclass(frozen=True, eq=False)
 class Orbifold:
-    """A closed surface X/H: the atlas of its patches, its Euler characteristic, whether it is orientable, its area.
+    """X/H, a closed surface or orbifold: its patches, its Euler characteristic, whether it is orientable, its area.
 
     area: 2 pi |euler_characteristic| in S^2 and H^2 (Gauss-Bonnet), the area of a fundamental domain in E^2.
     """
 
     atlas: Atlas
-    euler_characteristic: int
+    euler_characteristic: int | Fraction
     orientable: bool
     area: float
 

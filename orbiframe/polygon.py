@@ -136,19 +136,23 @@ class FundamentalPolygon:
 
     def require_conditions(self, tolerance: float = 1e-8) -> None:
         """Raise GeometryError, naming the side or vertex, unless Poincare's conditions hold to the tolerance."""
-        side = int(np.abs(self.length_defects).argmax())
-        if abs(self.length_defects[side]) > tolerance * max(1.0, float(self.side_lengths.max())):
-            mate = self.word.mate[side]
-            raise GeometryError(
-                f"sides {side} and {mate} of '{self.word}' are glued but have the lengths "
-                f"{self.side_lengths[side]:.9g} and {self.side_lengths[mate]:.9g}; they must be equal"
-            )
+        self.require_equal_lengths(tolerance)
         cycle = int(np.abs(self.angle_defects).argmax())
         if abs(self.angle_defects[cycle]) > tolerance * len(self.word):
             corners = ", ".join(map(str, self.word.vertex_cycles[cycle]))
             raise GeometryError(
                 f"the angles at the corners {corners} of '{self.word}' add up to "
                 f"{self.angle_defects[cycle] + 2 * np.pi:.9g}; corners that are glued to one point need 2 pi"
+            )
+
+    def require_equal_lengths(self, tolerance: float = 1e-8) -> None:
+        """Raise GeometryError, naming the sides, where two glued sides have different lengths."""
+        side = int(np.abs(self.length_defects).argmax())
+        if abs(self.length_defects[side]) > tolerance * max(1.0, float(self.side_lengths.max())):
+            mate = self.word.mate[side]
+            raise GeometryError(
+                f"sides {side} and {mate} of '{self.word}' are glued but have the lengths "
+                f"{self.side_lengths[side]:.9g} and {self.side_lengths[mate]:.9g}; they must be equal"
             )
 
     def meets_disc(self, centre: ArrayLike, radius: float) -> Bools:

@@ -133,12 +133,18 @@ class Word:
         side, end = (first - 1) % size, 1
         while True:
             yield (side + end) % size, side
-            mate = self.mate[side]
-            # The end of the side is glued to the same end of its mate, or to the other; leave by the side next to it.
-            arrival = end if self.reverses(side) else 1 - end
-            side, end = ((mate + 1) % size, 0) if arrival else ((mate - 1) % size, 1)
+            side, end = self._across(side, end)
             if (side + end) % size == first:
                 return
+
+    def _across(self, side: int, end: int) -> tuple[int, int]:
+        """The next side round the vertex at an end of a side, 0 its start, 1 its end, and which of its ends is there.
+
+        The end of the side is glued to the same end of its mate, or to the other; the next side is the one beside it.
+        """
+        size, mate = len(self), self.mate[side]
+        arrival = end if self.reverses(side) else 1 - end
+        return ((mate + 1) % size, 0) if arrival else ((mate - 1) % size, 1)
 
 
 def standard_word(euler_characteristic: int, orientable: bool) -> Word:
