@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from orbiframe.atlas import Atlas
+from orbiframe.elements import elements_within
 from orbiframe.errors import GeometryError
 from orbiframe.geometry import Geometry
 from orbiframe.group import Group
@@ -109,6 +110,24 @@ def tiles_cover_a_disc_once(component: Component, lab: Lab) -> None:
         assert abs(share * _disc_area(group) / group.area - 1) < 0.06, f"area of F {share * _disc_area(group):.4g}"
 
 
+def tiles_are_named_by_words(component: Component, _: Lab) -> None:
+    """The tiles are what words in the generators make: every tile has a word, and no word with a near image is missing.
+
+    The words come from walks that start at the pairings of the atlas and know nothing of `tiles`.
+    """
+    for group in _groups(component):
+        radius = 2 * _radius(group)
+        tiles = group.tiles(radius)
+        centres = group.geometry.distance(group.geometry.origin, tiles[..., 0])
+        found = elements_within(group, max(radius, float(centres.max())) + 1e-6)
+        matrices = found.spin().matrix
+        apart = np.abs(tiles[:, None] - matrices).max(axis=(2, 3))
+        _within(group, apart.min(axis=1))
+        _within(group, apart.min(axis=0)[found.distance <= radius - 1e-6])
+        for number in range(0, len(found), 1 + len(found) // 50):
+            _within(group, group.element(found.word(number)) - matrices[number])
+
+
 LAWS: tuple[Callable[[Component, Lab], None], ...] = (
     pairings_are_isometries,
     twins_are_inverse,
@@ -118,6 +137,7 @@ LAWS: tuple[Callable[[Component, Lab], None], ...] = (
     elements_have_no_fixed_point,
     reduction_is_idempotent_and_invariant,
     tiles_cover_a_disc_once,
+    tiles_are_named_by_words,
 )
 
 
@@ -164,6 +184,10 @@ def _turned_atlas(group: Group) -> Atlas:
     return _with_isometries(atlas, atlas.isometry @ group.geometry.rotation(0.1))
 
 
+def _without_second(tiles: Floats) -> Floats:
+    return np.concatenate([tiles[:1], tiles[2:]])
+
+
 def _with_isometries(atlas: Atlas, isometry: Floats) -> Atlas:
     return Atlas(atlas.geometry, atlas.radius, atlas.tail, atlas.head, atlas.inverse, isometry)
 
@@ -181,6 +205,7 @@ MUTANTS: dict[str, Callable[[Component], Component]] = {
         reduce=lambda _, x: tuple(np.array(part) for part in (x, np.broadcast_to(np.eye(3), (*np.shape(x), 3))))
     ),
     "tiles_cover_a_disc_once": _altered(tiles=lambda g, radius: np.repeat(g.tiles(radius), 2, axis=0)),
+    "tiles_are_named_by_words": _altered(tiles=lambda g, radius: _without_second(g.tiles(radius))),
 }
 
 
