@@ -11,6 +11,7 @@ from orbiframe.bernstein import (
     symmetric_power as symmetric_power,
 )
 from orbiframe.bisection import bisected as bisected
+from orbiframe.cell_sites import CellSites as CellSites, sites_of_cell as sites_of_cell
 from orbiframe.cell_triangulation import cell_triangulation as cell_triangulation
 from orbiframe.closed_geodesics import (
     LengthSpectrum as LengthSpectrum,
@@ -28,6 +29,13 @@ from orbiframe.delaunay import (
 )
 from orbiframe.dirichlet import DirichletCell as DirichletCell, dirichlet_cell as dirichlet_cell
 from orbiframe.domains import domain_for as domain_for
+from orbiframe.drawing.file import save_picture as save_picture
+from orbiframe.drawing.function_image import lifted as lifted
+from orbiframe.drawing.group_picture import draw_group as draw_group, group_picture as group_picture
+from orbiframe.drawing.picture import Picture as Picture, beside as beside
+from orbiframe.drawing.solid_picture import cut_picture as cut_picture, surface_picture as surface_picture
+from orbiframe.drawing.tessellation import Tessellation as Tessellation
+from orbiframe.drawing.tessellation_picture import tessellation_picture as tessellation_picture
 from orbiframe.element_basis import ElementBasis as ElementBasis
 from orbiframe.elements import Elements as Elements, elements_within as elements_within
 from orbiframe.errors import (

@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 
 BLUE, ORANGE = line_colour(1), line_colour(2)
 ELEVATION, TOP, UNIT = 0.27, 2.9, 78.0
-CORNERS = ((1.5, -1.0), (0.8, -1.35), (1.45, -1.95))
+CORNERS = ((1.4, -0.95), (0.35, -1.57), (1.35, -2.25))
 
 
 def on_page(curve: Curve) -> Curve:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -39,6 +40,12 @@ class Cell:
         """The pieces of the sides, [side, piece, end, coordinate]."""
         ends = np.stack([self.corners, np.roll(self.corners, -1, axis=0)], axis=1)
         return ends.reshape(len(self.letters), self.pieces, 2, 3)
+
+    @property
+    def mirrors(self) -> tuple[bool, ...]:
+        """Which sides are mirrors: their letters occur once."""
+        count = Counter(map(abs, self.letters))
+        return tuple(count[abs(letter)] == 1 for letter in self.letters)
 
     @cached_property
     def middles(self) -> Floats:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,7 @@ from orbiframe.drawing.colours import GREY, INK, PAPER, line_colour, mixed, tint
 from orbiframe.drawing.file import require_picture_file, save_picture
 from orbiframe.drawing.function_image import Function, function_image
 from orbiframe.drawing.models import Chart, Model, Solid, model_of
-from orbiframe.drawing.page import Page
+from orbiframe.drawing.page import WIDTH, Page
 from orbiframe.drawing.picture import Curve, Item, Label, Picture, Shape, arrowhead, circle
 from orbiframe.drawing.tiles import Tiles, nearest_tiles, tiles_within
 from orbiframe.errors import UsageError
@@ -24,10 +25,12 @@ from orbiframe.word import text_of
 
 Floats = NDArray[np.float64]
 
-TILES = {-1: 450, 0: 60, 1: 2}
+# Half of a window in E^2 in circumradii of F; tiles of H^2 are drawn from this size in points on, so many of them.
+_WINDOW, _SMALLEST, _COUNTS = 2.2, 4.0, (450, 1800)
 _SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 # Widths of lines go with the square root of the size of a tile on the page, from the thickest to the thinnest.
 _THICK, _THIN, _CLASSES = 1.0, 0.12, 6
+_DOT = 2.4  # radius of a point in F
 # Tints of tiles, stronger for odd lengths, and how fast they fade with the length.
 _TINTS, _FADE = (0.30, 0.52), 0.93
 # The hyperboloid is cut off so many times as high as the corners of F are.
@@ -35,20 +38,10 @@ _RIM = 1.3
 _MOTIF_LEAST = 9.0  # points; smaller tiles show no motif
 
 
-def draw_group(
-    group: Group,
-    path: str | Path,
-    *,
-    model: str | None = None,
-    radius: float | None = None,
-    tiles: int | None = None,
-    motif: bool | None = None,
-    function: Function | None = None,
-) -> None:
-    """Write the picture of a group to a .svg, .png or .pdf file; see `group_picture`."""
+def draw_group(group: Group, path: str | Path, **options: Any) -> None:
+    """Write the picture of a group to a .svg, .png or .pdf file; the options are those of `group_picture`."""
     require_picture_file(Path(path))
-    picture = group_picture(group, model=model, radius=radius, tiles=tiles, motif=motif, function=function)
-    save_picture(picture, path)
+    save_picture(group_picture(group, **options), path)
 
 
 def group_picture(
@@ -59,6 +52,7 @@ def group_picture(
     tiles: int | None = None,
     motif: bool | None = None,
     function: Function | None = None,
+    points: Floats | None = None,
 ) -> Picture:
     """The tiling of X by a group, with the labelled fundamental polygon in the middle.
 
@@ -69,14 +63,17 @@ def group_picture(
     model: projective, conformal (the default), hyperboloid, or sphere (the default for S^2); radius: draw the tiles
     that meet this disc about the origin, or tiles: at most so many, the nearest; motif: a letter F in every tile shows
     which elements reverse orientation, by default where there are some; function: values (n,) of an invariant function
-    at points (n, 3) of X, drawn as colours instead of those of the tiles.
+    at points (n, 3) of X, drawn as colours instead of those of the tiles; points: (k, 3) of X,
+    drawn with their images in all tiles.
 
     Raises UsageError for a model that the geometry has not, and for too many tiles.
     """
     if radius is not None and tiles is not None:
         raise UsageError("a radius and a number of tiles are given; give one of them")
     cell, chosen = cell_of(group), model_of(group.geometry, model)
-    with_motif = (not group.word.orientable and function is None) if motif is None else motif
+    # Where all tiles beside one another are mirror images, the two tints show it.
+    reverses = not group.word.orientable and not any(cell.mirrors)
+    with_motif = (reverses and function is None) if motif is None else motif
     if isinstance(chosen, Solid):
         chosen = replace(chosen, height=_RIM * float(np.cosh(cell.circumradius)))
     if radius is not None:
@@ -84,8 +81,21 @@ def group_picture(
     elif tiles is None and isinstance(chosen, Solid) and group.geometry.curvature < 0:
         shown = tiles_within(group, float(np.arccosh(chosen.height)))
     else:
-        shown = nearest_tiles(group, TILES[group.geometry.curvature] if tiles is None else tiles)
-    return GroupPicture(cell, shown, chosen, with_motif, function).picture()
+        shown = _default_tiles(group, cell) if tiles is None else nearest_tiles(group, tiles)
+    return GroupPicture(cell, shown, chosen, with_motif, function, points).picture()
+
+
+def _default_tiles(group: Group, cell: Cell) -> Tiles:
+    """As many as fill the window, or in H^2 as far as tiles can be told apart."""
+    curvature, radius = group.geometry.curvature, cell.circumradius
+    if curvature == 0:
+        return tiles_within(group, np.sqrt(2) * _WINDOW * radius)
+    if curvature > 0:
+        return tiles_within(group, np.pi)
+    # A tile at the distance d has about WIDTH / 2 / cosh(d / 2)^2 times its circumradius on the page.
+    far = 2 * np.arccosh(np.sqrt(max(WIDTH / 2 * radius / _SMALLEST, 1.0)))
+    count = 2 * np.pi * (np.cosh(far) - 1) / group.area
+    return nearest_tiles(group, int(np.clip(count, *_COUNTS)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,15 +107,18 @@ class GroupPicture:
     model: Model
     motif: bool = False
     function: Function | None = None
+    points: Floats | None = None
 
     def picture(self) -> Picture:
         """The items in the order of drawing."""
-        return self.page.picture([*self._background(), *self._tiles(), *self._sides(), *self._rim(), *self._labels()])
+        return self.page.picture(
+            [*self._background(), *self._tiles(), *self._sides(), *self._rim(), *self._orbits(), *self._labels()]
+        )
 
     @cached_property
     def page(self) -> Page:
         """The model on the page."""
-        return Page(self.model, 2.2 * float(np.linalg.norm(self.model.place(self.cell.corners), axis=1).max()))
+        return Page(self.model, _WINDOW * float(np.linalg.norm(self.model.place(self.cell.corners), axis=1).max()))
 
     def _background(self) -> Iterator[Item]:
         if self.function is not None:
@@ -151,12 +164,12 @@ class GroupPicture:
         return tint(colour, _TINTS[length % 2] * _FADE**length)
 
     def _sides(self) -> Iterator[Item]:
-        """The sides of F, thick and in the colours of their letters, with arrows."""
-        for letter, pieces in zip(self.cell.letters, self.cell.sides, strict=True):
+        """The sides of F, thick and in the colours of their letters, with arrows but on mirrors."""
+        for letter, pieces, mirror in zip(self.cell.letters, self.cell.sides, self.cell.mirrors, strict=True):
             curves = self.page.paths(np.concatenate([pieces[:, 0], pieces[-1:, 1]])[None], closed=False)
             yield Shape(curves, stroke="#ffffff", width=4.2)
             yield Shape(curves, stroke=self._colour(letter), width=2.4)
-            if curves:
+            if curves and not mirror:
                 yield self._arrow(curves[0], letter)
         corners = self.page.place(self.cell.corners[:: self.cell.pieces])
         dots = [list(circle(corner, 2.2)) for corner in corners]
@@ -192,6 +205,15 @@ class GroupPicture:
                 yield Shape(levels, stroke=GREY, width=0.4, dash=(2.0, 2.5))
         elif isinstance(self.model, Chart):
             yield Shape([self.page.window], True, stroke=INK, width=0.6)
+
+    def _orbits(self) -> Iterator[Item]:
+        """The images of the points, as dots that shrink with the tiles."""
+        given = np.zeros((0, 3)) if self.points is None else self.points
+        size = np.maximum(_DOT * np.minimum(self._sizes / self._sizes[0], 1.0), _THIN)
+        images = np.einsum("kij,mj->kmi", self.tiles.elements, given)
+        seen = [[x for x in row if len(self.model.front(x[None], False))] for row in images]
+        dots = [circle(self.page.place(x), r) for row, r in zip(seen, size, strict=True) for x in row]
+        yield Shape(dots, True, fill=INK, clip=self.page.window)
 
     def _labels(self) -> Iterator[Item]:
         """Letters inside F, beside the middles of their sides."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from orbiframe.bisection import Bisection
 from orbiframe.diagonals import outline
+from orbiframe.geodesic_triangulation import GeodesicTriangulation
 from orbiframe.geometry import Geometry
 from orbiframe.orbifold import Orbifold
 from orbiframe.polyhedron import Polyhedron
@@ -70,6 +71,12 @@ class Tessellation:
         steps = refinement.composed(atlas.isometry[triangulation.transition])[outline(polyhedron)]
         faces = tuple(_lifted(polyhedron, triangulation, steps, int(size)) for size in np.unique(polyhedron.face_sizes))
         return cls(triangulation.orbifold, faces)
+
+    @classmethod
+    def of_triangulation(cls, triangulation: GeodesicTriangulation) -> Tessellation:
+        """The triangles of X/H themselves, such as those of `delaunay`."""
+        corners = np.einsum("fij,fkj->fki", triangulation.placement, triangulation.corners)
+        return cls(triangulation.orbifold, (LiftedFaces(triangulation.patch, corners),))
 
     def copies(self, radius: float, patch: int = 0, centre: Floats | None = None) -> Iterator[Copies]:
         """All lifts of faces of patches whose origins lie within a radius about `centre`, in a frame with it as origin.
