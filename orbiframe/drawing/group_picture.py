@@ -28,8 +28,8 @@ Floats = NDArray[np.float64]
 # Half of a window in E^2 in circumradii of F; tiles of H^2 are drawn from this size in points on, so many of them.
 _WINDOW, _SMALLEST, _COUNTS = 2.2, 4.0, (450, 1800)
 _SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
-# Widths of lines go with the square root of the size of a tile on the page, from the thickest to the thinnest.
-_THICK, _THIN, _CLASSES = 1.0, 0.12, 6
+# Widths of lines go with the square root of the size of a tile on the page, from the thickest, of large tiles, on.
+_LARGE, _THICK, _THIN, _CLASSES = 120.0, 1.0, 0.12, 6
 _DOT = 2.4  # radius of a point in F
 # Tints of tiles, stronger for odd lengths, and how fast they fade with the length.
 _TINTS, _FADE = (0.30, 0.52), 0.93
@@ -138,7 +138,7 @@ class GroupPicture:
     @cached_property
     def _widths(self) -> Floats:
         """The width of the lines of every tile, of few different ones."""
-        share = np.sqrt(np.minimum(self._sizes / self._sizes[0], 1.0))
+        share = np.sqrt(np.minimum(self._sizes / _LARGE, 1.0))
         steps = np.round(share * _CLASSES) / _CLASSES
         return np.asarray(np.maximum(_THICK * steps, _THIN))
 
