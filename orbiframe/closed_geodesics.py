@@ -41,9 +41,9 @@ class Systole:
 class LengthSpectrum:
     """Closed geodesics of X/H: conjugacy classes of the group, a class and its inverse counted once, by length.
 
-    length: (n,), rising; power: (n,), how often it runs through a shorter one, 1 for a primitive class; one_sided: (n,), going round it reverses
-    orientation; word: n words in the letters of the group, one of each class; error: the largest difference between the
-    lengths of two elements of one class, which is what rounding has done.
+    length: (n,), rising; power: (n,), how often it runs through a shorter one, 1 for a primitive class; one_sided:
+    (n,), going round it reverses orientation; word: n words in the letters of the group, one of each class; error: the
+    largest difference between the lengths of two elements of one class, which is what rounding has done.
     """
 
     length: Floats
@@ -77,25 +77,29 @@ def length_spectrum(group: Group, up_to: float) -> LengthSpectrum:
 def systole(group: Group) -> Systole:
     """The shortest closed geodesics of X/H that cannot be contracted: length and number, opposite directions once.
 
-    Raises GeometryError for the sphere, where every curve can be contracted.
+    On an orbifold with singular points, those that cannot be drawn into one of them either. Raises GeometryError for
+    the sphere, where every curve can be contracted.
     """
     cell = dirichlet_cell(group)
-    if not len(cell.mate):
-        raise GeometryError(f"every closed curve on the {group.word.surface} can be contracted: there is no systole")
     lengths = translation_lengths(cell.spin)
-    found = _spectrum(group, cell, float(lengths[lengths > _EQUAL].min()) * (1 + 1e-7))
+    lengths = lengths[lengths > _EQUAL]
+    if group.geometry.curvature > 0 and not len(lengths):
+        raise GeometryError("every closed curve on the sphere can be contracted: there is no systole")
+    up_to = float(lengths.min()) if len(lengths) else cell.circumradius
+    while not len((found := _spectrum(group, cell, up_to * (1 + 1e-7))).length):
+        up_to *= 2
     return Systole(*found.multiplicities[0])
 
 
 def translation_lengths(spin: Spin) -> Floats:
     """How far isometries (n,) move the points of their axes, (n,); 0 for rotations and reflections.
 
-    A translation has |Re a| = cosh(l/2), a glide reflection |Re b| = sinh(l/2); in E^2 |b| or |Re b| = l/2, and for the
-    antipodal map of S^2 |b| = sin(l/2).
+    A translation has |Re a| = cosh(l/2), a glide reflection |Re b| = sinh(l/2); in E^2 |b| or |Re b| = l/2. The
+    antipodal map of S^2 moves all points by pi; other isometries of S^2 have fixed points, or powers that do.
     """
     a, b, reverses, k = spin.a, spin.b, spin.reverses, spin.curvature
     if k > 0:
-        return 2 * np.arcsin(np.where(reverses, np.minimum(np.abs(b), 1), 0.0)).astype(np.float64)
+        return np.where(reverses & (np.abs(a) < _EQUAL), np.pi, 0.0)
     straight = np.sqrt(np.maximum((np.abs(a.real) - 1) * (np.abs(a.real) + 1), 0))
     if k == 0:
         straight = np.where(np.abs(a.imag) < _EQUAL, np.abs(b), 0)

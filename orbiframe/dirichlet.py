@@ -72,22 +72,24 @@ class DirichletCell(Generators):
 def dirichlet_cell(group: Group) -> DirichletCell:
     """The Dirichlet cell of a group about the origin.
 
-    It starts from the transitions of the one patch of `group.atlas()`. As long as the polygon of their bisectors has a
-    larger area than X/H, some product of two elements cuts off a part of it. In S^2 all elements are listed instead.
-    Raises GeometryError for a group that has no one-patch atlas with letters for its transitions, or whose elements
-    fix the origin.
+    It starts from `group.pairings()`, those of the sides of the cell of the group. As long as the polygon of their
+    bisectors has a larger area than X/H, some product of two elements cuts off a part of it. In S^2 all elements are
+    listed instead.
+    Raises GeometryError for a group whose pairings are no letters, or whose elements fix the origin.
     """
     geometry = group.geometry
-    spin, letters = lettered_pairings(group)
     if geometry.curvature > 0:
+        letters: list[Letters] = [(label,) for label in sorted({abs(letter) for letter in group.word.letters})]
+        spin = Spin.joined([Spin.of_matrix(1, group.generator(label)[None]) for (label,) in letters])
         while len((grown := _distinct(*_with_products(spin, letters)))[1]) > len(letters):
             spin, letters = grown
-        return _paired(geometry, spin, letters, len(letters))
+        return _paired(geometry, *_distinct(spin, letters))
+    spin, letters = lettered_pairings(group)
     kept, words = spin, letters
     for _ in range(_MOST_ROUNDS):
         sides = _hull(geometry, kept)
         if sides is not None and abs(_polygon_area(geometry, kept[sides]) / group.area - 1) < _SAME_AREA:
-            return _paired(geometry, kept[sides], [words[k] for k in sides], len(sides))
+            return _paired(geometry, kept[sides], [words[k] for k in sides])
         if sides is not None:
             kept, words = Spin.joined([kept[sides], spin]), [*(words[k] for k in sides), *letters]
         kept, words = _distinct(*_with_products(kept, words))
@@ -168,12 +170,12 @@ def _polygon_area(geometry: Geometry, spin: Spin) -> float:
     return float(geometry.triangle_area(geometry.origin, corners, np.roll(corners, -1, axis=0)).sum())
 
 
-def _paired(geometry: Geometry, spin: Spin, letters: list[Letters], side_count: int) -> DirichletCell:
-    """The cell with the inverses of all its elements."""
-    if side_count == 0:
+def _paired(geometry: Geometry, spin: Spin, letters: list[Letters]) -> DirichletCell:
+    """The cell whose sides belong to some elements, with the inverses of them all."""
+    if not letters:
         return DirichletCell(geometry, spin, (), np.zeros(0, dtype=np.intp), 0)
     every, words = _distinct(Spin.joined([spin, spin.inverse]), [*letters, *map(inverse_letters, letters)])
     matrices = every.matrix
     inverse = geometry.inverse(matrices)
     mate = np.array([next(j for j, h in enumerate(matrices) if _agree(h, g)) for g in inverse])
-    return DirichletCell(geometry, every, tuple(words), mate, side_count)
+    return DirichletCell(geometry, every, tuple(words), mate, len(letters))

@@ -10,6 +10,8 @@ from reference_geometries import GEOMETRIES
 from scipy.integrate import quad
 
 from orbiframe import GeometryError, PolygonGroup, Word, length_spectrum, regular_polygon, standard_word, systole
+from orbiframe.signature import Signature
+from orbiframe.symmetry_group import orbifold_group
 
 S2, E2, H2 = GEOMETRIES
 
@@ -73,6 +75,41 @@ def test_the_systole_of_bolzas_surface() -> None:
     found = systole(regular("abcdABCD"))
     assert found.length == pytest.approx(2 * np.arccosh(1 + np.sqrt(2)), abs=1e-13)
     assert found.multiplicity == 12
+
+
+def klein_quartic() -> PolygonGroup:
+    """Klein's 14-gon: side 2 k + 1 is glued to side 2 k + 6."""
+    letters = [0] * 14
+    for k in range(7):
+        letters[2 * k + 1], letters[(2 * k + 6) % 14] = k + 1, -k - 1
+    return PolygonGroup(regular_polygon(H2, Word(tuple(letters))))
+
+
+def test_the_systole_of_kleins_quartic_and_of_its_orbifold() -> None:
+    """21 geodesics of four times the shortest length of 237, 2 arccosh of half the trace [Schmutz 1993].
+
+    The trace t of that length is 2 cos(2 pi/7) + 1 = 2 cosh(l/2): in Q(cos 2 pi/7), as all traces of 237.
+    """
+    short = 2 * np.arccosh(np.cos(2 * np.pi / 7) + 0.5)
+    triangle = systole(orbifold_group(H2, Signature.parse("237")))
+    assert triangle.length == pytest.approx(short, abs=1e-12)
+    found = systole(klein_quartic())
+    assert (found.length, found.multiplicity) == (pytest.approx(4 * short, abs=1e-12), 21)
+
+
+@pytest.mark.parametrize(
+    ("symbol", "order", "share", "count"),
+    [("442", 4, 1.0, 1), ("2222", 2, 1.0, 2), ("*442", 8, np.sqrt(0.5), 1), ("4*2", 8, 0.5, 1)],
+)
+def test_systoles_of_flat_orbifolds(symbol: str, order: int, share: float, count: int) -> None:
+    """The side of the square lattice, whose torus covers with `order` sheets, or the part that a glide reflection moves.
+
+    p4m has glide reflections by half a diagonal of the square, p4g by half a side; turns by 90 degrees join two classes.
+    """
+    group = orbifold_group(E2, Signature.parse(symbol))
+    found = systole(group)
+    assert found.length == pytest.approx(share * np.sqrt(order * group.area), abs=1e-12)
+    assert found.multiplicity == count
 
 
 def test_words_have_the_lengths_of_their_classes() -> None:

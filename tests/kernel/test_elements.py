@@ -21,6 +21,8 @@ from orbiframe import (
     growth_series,
     regular_polygon,
 )
+from orbiframe.signature import Signature
+from orbiframe.symmetry_group import orbifold_group
 from orbiframe.word_length import even_corners
 
 S2, E2, H2 = GEOMETRIES
@@ -132,6 +134,25 @@ def test_the_antipodal_group_has_two_elements() -> None:
     np.testing.assert_allclose(found.spin().matrix, [np.eye(3), -np.eye(3)], atol=1e-15)
     assert [found.word(k) for k in range(2)] == [(), (1,)]
     assert len(elements_within(FiniteGroup(S2, Word.parse("aa")), 3.0)) == 1
+
+
+@pytest.mark.parametrize(("symbol", "order"), [("*235", 120), ("235", 60), ("332", 12), ("3x", 6), ("*33", 6)])
+def test_spherical_groups_have_as_many_elements_as_known(symbol: str, order: int) -> None:
+    group = orbifold_group(S2, Signature.parse(symbol))
+    found = elements_within(group, np.pi)
+    assert len(found) == order
+    for number in range(order):
+        np.testing.assert_allclose(group.element(found.word(number)), found.spin().matrix[number], atol=1e-13)
+
+
+@pytest.mark.parametrize("symbol", ["*237", "2223", "2*33"])
+def test_groups_with_fixed_points_fill_the_disc(symbol: str) -> None:
+    group = orbifold_group(H2, Signature.parse(symbol))
+    found = elements_within(group, 7.0)
+    assert len(found) == pytest.approx(2 * np.pi * (np.cosh(7.0) - 1) / group.area, rel=0.02)
+    place = found.spin().place
+    assert H2.distance(place[1:], place[0]).min() > 0.1
+    assert len(np.unique(np.round(place, 5), axis=0)) == len(found)
 
 
 def test_elements_far_away_keep_their_digits() -> None:
