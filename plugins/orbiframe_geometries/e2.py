@@ -80,10 +80,18 @@ class E2(Geometry):
         return np.asarray(np.maximum(bend, np.abs(matrix[..., 0, :] - [1.0, 0.0, 0.0]).max(axis=-1)))
 
     def nearest_isometry(self, g: ArrayLike) -> Floats:
-        """The same translation with the orthogonal polar factor of the linear part."""
+        """The same translation with the orthogonal polar factor of the linear part.
+
+        Of a matrix with positive determinant that is the rotation by the angle of (a + d, c - b), otherwise the
+        reflection with first column along (a - d, b + c).
+        """
         matrix = np.array(g, dtype=float)
-        left, _, right = np.linalg.svd(matrix[..., 1:, 1:])
-        matrix[..., 1:, 1:] = left @ right
+        a, b, c, d = (matrix[..., i, j] for i, j in ((1, 1), (1, 2), (2, 1), (2, 2)))
+        sign = np.where(a * d >= b * c, 1.0, -1.0)
+        cosine, sine = a + sign * d, c - sign * b
+        length = np.hypot(cosine, sine)
+        cosine, sine = cosine / length, sine / length
+        matrix[..., 1:, 1:] = np.stack([cosine, -sign * sine, sine, sign * cosine], axis=-1).reshape(*a.shape, 2, 2)
         matrix[..., 0, :] = [1.0, 0.0, 0.0]
         return matrix
 
