@@ -102,9 +102,9 @@ def test_the_systole_of_kleins_quartic_and_of_its_orbifold() -> None:
     [("442", 4, 1.0, 1), ("2222", 2, 1.0, 2), ("*442", 8, np.sqrt(0.5), 1), ("4*2", 8, 0.5, 1)],
 )
 def test_systoles_of_flat_orbifolds(symbol: str, order: int, share: float, count: int) -> None:
-    """The side of the square lattice, whose torus covers with `order` sheets, or the part that a glide reflection moves.
+    """The side of the square lattice, whose torus covers with `order` sheets, or the part that a glide moves.
 
-    p4m has glide reflections by half a diagonal of the square, p4g by half a side; turns by 90 degrees join two classes.
+    p4m has glide reflections by half a diagonal of the square, p4g by half a side; turns join two classes.
     """
     group = orbifold_group(E2, Signature.parse(symbol))
     found = systole(group)
