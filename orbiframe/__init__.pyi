@@ -11,6 +11,12 @@ from orbiframe.bernstein import (
     symmetric_power as symmetric_power,
 )
 from orbiframe.bisection import bisected as bisected
+from orbiframe.built_in_words import (
+    klein_quartic as klein_quartic,
+    opposite_sides as opposite_sides,
+    word_named as word_named,
+)
+from orbiframe.canonical_word import CanonicalWord as CanonicalWord, canonical_form as canonical_form
 from orbiframe.cell_sites import CellSites as CellSites, sites_of_cell as sites_of_cell
 from orbiframe.cell_triangulation import cell_triangulation as cell_triangulation
 from orbiframe.closed_geodesics import (

@@ -86,7 +86,7 @@ def orbifold_cell(geometry: Geometry, signature: Signature) -> SymmetryPolygon:
     The cell is a fan of triangles about the origin. Each of its vertices is the centre of a circle, circles of
     neighbours touch, and the angles at a vertex add up to 2 pi divided by its order: radii like these exist, and only
     one set (in E^2 up to scale), by the theorem of Koebe, Andreev and Thurston. Triangle groups give their triangle. In
-    E^2 the cell has the area 1.
+    E^2 the cell has the area 1, and its last side is the lowest.
 
     Raises GeometryError for another geometry, or where the radii cannot be found to ten digits.
     """
@@ -104,9 +104,15 @@ def orbifold_cell(geometry: Geometry, signature: Signature) -> SymmetryPolygon:
     reach = radius[0] + radius[1 + corner_class]
     direction = np.concatenate([[0.0], np.cumsum(central)[:-1]])
     if geometry.curvature == 0:
-        area = (reach * np.roll(reach, -1) * np.sin(central)).sum() / 2
-        reach = reach / np.sqrt(area)
+        reach, direction = _unit_area(reach, direction, central)
     return SymmetryPolygon(geometry, geometry.from_polar(reach, direction), word)
+
+
+def _unit_area(reach: Floats, direction: Floats, central: Floats) -> tuple[Floats, Floats]:
+    """Polar coordinates of the corners scaled to the area 1, and turned so that the last side runs to the right."""
+    area = (reach * np.roll(reach, -1) * np.sin(central)).sum() / 2
+    corner = reach * np.exp(1j * direction)
+    return reach / np.sqrt(area), direction - np.angle(corner[0] - corner[-1])
 
 
 def _classes(word: MirrorWord, orders: tuple[int, ...]) -> tuple[Ints, Floats]:

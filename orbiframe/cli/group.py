@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from orbiframe.cli.destination import require_folder
+from orbiframe.cli.symbol import describe_symbol, is_symbol, symbol_lines
 from orbiframe.errors import UsageError
 from orbiframe.registry import Registry
 
@@ -17,13 +18,17 @@ if TYPE_CHECKING:
 
 # The shape of a surface of each sign of the Euler characteristic that is meant by "regular".
 _REGULAR = {1: "finite", 0: "lattice", -1: "regular-polygon"}
+_WORD_HELP = (
+    "how the sides of a polygon are glued, such as abABcdCD, capitals being inverses; or bolza or klein-quartic; or "
+    "Conway's symbol of an orbifold, such as *237, 4*2 or xx"
+)
 _GEOMETRY = {1: "s2", 0: "e2", -1: "h2"}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add("word", metavar="WORD", help="how the sides of a polygon are glued, such as abABcdCD; capitals are inverses")
+    add("word", metavar="WORD", help=_WORD_HELP)
     add("--polygon", metavar="NAME", default="regular", help="regular (the default), or the name of a group")
     add("--systole", action="store_true", help="the shortest closed geodesic, and how many there are")
     add("--spectrum", metavar="N", type=int, help="the N smallest eigenvalues of the Laplacian, with multiplicities")
@@ -39,12 +44,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace, registry: Registry) -> int:
     """Describe the group, compute and draw what was asked for."""
-    from orbiframe.word import Word
+    from orbiframe.built_in_words import word_named
 
     if args.spectrum is not None and args.spectrum < 1:
         raise UsageError(f"--spectrum {args.spectrum}: ask for at least 1 eigenvalue")
     _require_picture(args)
-    word = Word.parse(args.word)
+    if is_symbol(args.word):
+        about = describe_symbol(args, registry)
+        print(json.dumps(about) if args.json else "\n".join(symbol_lines(about)))
+        return 0
+    word = word_named(args.word)
     found = _described(word)
     if args.systole or args.spectrum or args.draw:
         found.update(_computed(args, _group(word, args.polygon, registry), registry))
@@ -79,7 +88,7 @@ def _described(word: Word) -> dict[str, Any]:
 
     deficit = 2 - word.euler_characteristic
     one_vertex = len(word.vertex_cycles) == 1
-    return {
+    found: dict[str, Any] = {
         "word": str(word),
         "surface": {
             "name": word.surface,
@@ -91,6 +100,21 @@ def _described(word: Word) -> dict[str, Any]:
         "relations": ["".join(map(text_of, relation)) for relation in word.letter_relations],
         "homology": Presentation.of(word if one_vertex else word.standard).homology_text,
     }
+    return found | ({} if word == word.standard else {"standard": _reduced(word)})
+
+
+def _reduced(word: Word) -> dict[str, Any]:
+    """The standard word, its letters in those of the given word, and those of the given word in its letters."""
+    from orbiframe.canonical_word import canonical_form
+    from orbiframe.word import text_of
+
+    reduced = canonical_form(word)
+    changes = {"letters": reduced.new_in_old, "given": reduced.old_in_new}
+    texts = {
+        name: {text_of(k): "".join(map(text_of, letters)) for k, letters in change.items()}
+        for name, change in changes.items()
+    }
+    return {"word": str(reduced.standard), **texts}
 
 
 def _computed(args: argparse.Namespace, group: Group, registry: Registry) -> dict[str, Any]:
@@ -146,6 +170,9 @@ def _lines(found: dict[str, Any]) -> list[str]:
         ("relations", ", ".join(f"{relation} = 1" for relation in found["relations"])),
         ("homology", found["homology"]),
     ]
+    if standard := found.get("standard"):
+        rows += [("standard", standard["word"]), ("", f"with {_equations(standard['letters'])}")]
+        rows += [("", f"and {_equations(standard['given'])}")]
     if shortest := found.get("systole"):
         rows.append(("systole", f"{shortest['length']:.12g}, {shortest['multiplicity']} closed geodesics"))
     rows += [
@@ -157,3 +184,8 @@ def _lines(found: dict[str, Any]) -> list[str]:
     if "picture" in found:
         rows.append(("picture", found["picture"]))
     return [f"{name:<10}{text}" for name, text in rows]
+
+
+def _equations(change: dict[str, str]) -> str:
+    """Letters and their words, such as "a = bC, b = c"."""
+    return ", ".join(f"{letter} = {text or '1'}" for letter, text in change.items())

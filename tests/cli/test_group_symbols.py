@@ -1,0 +1,79 @@
+"""orbiframe group with Conway's symbols, with words that have a name, and with words that are reduced."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+
+@pytest.mark.parametrize(
+    ("symbol", "geometry", "chi", "order", "area"),
+    [
+        ("*237", "h2", "-1/84", None, np.pi / 42),
+        ("237", "h2", "-1/42", None, np.pi / 21),
+        ("*532", "s2", "1/60", 120, np.pi / 30),
+        ("2222", "e2", "0", None, 1.0),
+        ("o", "e2", "0", None, 1.0),
+        ("xx", "e2", "0", None, 1.0),
+        ("oo", "h2", "-2", None, 4 * np.pi),
+        ("1", "s2", "2", 1, 4 * np.pi),
+    ],
+)
+def test_a_symbol_is_described_in_json(orbiframe, symbol, geometry, chi, order, area):
+    ran = orbiframe("group", symbol, "--json")
+    assert (ran.status, ran.err) == (0, "")
+    found = json.loads(ran.out)
+    assert found["orbifold"]["geometry"] == geometry
+    assert Fraction(found["orbifold"]["euler_characteristic"]) == Fraction(chi)
+    assert (found["symbol"], found["order"]) == (symbol, order)
+    assert found["area"] == pytest.approx(area, rel=1e-11)
+
+
+def test_generators_and_relations_are_printed(orbiframe):
+    ran = orbiframe("group", "*2 3 12")
+    assert ran.status == 0
+    assert "symbol     *23(12)" in ran.out
+    assert "generators a (reflection), b (reflection), c (reflection)" in ran.out
+    assert "(bc)^12 = 1" in ran.out
+
+
+@pytest.mark.parametrize("symbol", ["*237", "4*2", "22x"])
+def test_an_orbifold_is_drawn(orbiframe, tmp_path, symbol):
+    picture = tmp_path / "tiles.svg"
+    ran = orbiframe("group", symbol, "--draw", picture, "--json")
+    assert (ran.status, ran.err) == (0, "")
+    assert json.loads(ran.out)["picture"] == str(picture)
+    assert picture.read_text().startswith("<")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "problem"),
+    [
+        (["23"], "bad orbifold"),
+        (["*203"], "order 0"),
+        (["*237", "--spectrum", "3"], "--spectrum is for closed surfaces"),
+        (["*532", "--draw", "ball.svg"], "finite group"),
+        (["bolzas"], "Did you mean 'bolza'"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_words(orbiframe, tmp_path, monkeypatch, arguments, problem):
+    monkeypatch.chdir(tmp_path)
+    ran = orbiframe("group", *arguments)
+    assert ran.status != 0
+    assert problem in ran.err
+
+
+def test_a_word_is_reduced_with_the_change_of_its_letters(orbiframe):
+    found = json.loads(orbiframe("group", "abcdABCD", "--json").out)["standard"]
+    assert found["word"] == "abABcdCD"
+    assert sorted(found["letters"]) == sorted(found["given"]) == list("abcd")
+    assert "standard" not in json.loads(orbiframe("group", "abABcdCD", "--json").out)
+
+
+def test_the_klein_quartic_is_built_in(orbiframe):
+    found = json.loads(orbiframe("group", "klein-quartic", "--json").out)
+    assert found["surface"]["name"] == "genus 3"
+    assert found["vertices"] == 2
