@@ -45,7 +45,8 @@ def _height(inverse, f, m, i, x0, x1, x2):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, inline="always")
-def _all_heights(inverse, f, m, x0, x1, x2):  # type: ignore[no-untyped-def]
+def micro_heights(inverse, f, m, x0, x1, x2):  # type: ignore[no-untyped-def]
+    """The coordinates of a vector in micro triangle m of triangle f."""
     return (
         _height(inverse, f, m, 0, x0, x1, x2),
         _height(inverse, f, m, 1, x0, x1, x2),
@@ -54,11 +55,11 @@ def _all_heights(inverse, f, m, x0, x1, x2):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy")
-def _cell(inverse, f, x0, x1, x2):  # type: ignore[no-untyped-def]
+def micro_cell(inverse, f, x0, x1, x2):  # type: ignore[no-untyped-def]
     """The micro triangle that holds a point, or the one it is least outside of."""
     best, least = 0, -np.inf
     for m in range(inverse.shape[1]):
-        a, b, c = _all_heights(inverse, f, m, x0, x1, x2)
+        a, b, c = micro_heights(inverse, f, m, x0, x1, x2)
         height = min(a, min(b, c)) / abs(a + b + c)
         if height >= 0:
             return m
@@ -68,7 +69,7 @@ def _cell(inverse, f, x0, x1, x2):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy")
-def _fan_cell(fan, f, a, b, c):  # type: ignore[no-untyped-def]
+def fan_cell(fan, f, a, b, c):  # type: ignore[no-untyped-def]
     """The micro triangle of a fan at coordinates in the whole triangle: edge e, or 2 e and 2 e + 1 beside its R."""
     r0, r1, r2 = a * fan[f, 0], b * fan[f, 1], c * fan[f, 2]
     if r2 <= r0 and r2 <= r1:
@@ -206,14 +207,14 @@ def _coordinates(inverse, fan, f, columns, n, kinds, lam):  # type: ignore[no-un
     """
     whole = fan.shape[1] > 0
     x0, x1, x2 = columns[n, 0, 0], columns[n, 1, 0], columns[n, 2, 0]
-    cell = 0 if whole else _cell(inverse, f, x0, x1, x2)
-    a, b, c = _all_heights(inverse, f, cell, x0, x1, x2)
+    cell = 0 if whole else micro_cell(inverse, f, x0, x1, x2)
+    a, b, c = micro_heights(inverse, f, cell, x0, x1, x2)
     if whole:
-        cell, a, b, c = _fan_cell(fan, f, a, b, c)
+        cell, a, b, c = fan_cell(fan, f, a, b, c)
     lam[0, 0], lam[0, 1], lam[0, 2] = a, b, c
     if kinds > 1:
         for k in (1, 2):
-            a, b, c = _all_heights(
+            a, b, c = micro_heights(
                 inverse, f, 0 if whole else cell, columns[n, 0, k], columns[n, 1, k], columns[n, 2, k]
             )
             if whole:
@@ -241,26 +242,29 @@ def evaluate_nets(place, nets, tables, values):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def evaluate_values(place, nets, tables, values):  # type: ignore[no-untyped-def]
-    """The values alone of functions with given Bernstein coefficients: nets (F, m, n, q), values (points, q)."""
-    (order, face, columns), inverse, fan, _, shape = place
-    degree, width = shape[1], nets.shape[3]
-    powers, lam = np.empty((3, degree + 1)), np.empty((3, 3))
-    for n in range(len(order)):
-        f, out = face[n], order[n]
-        cell = _coordinates(inverse, fan, f, columns, n, 1, lam)
-        for i in range(3):
-            power, base = 1.0, lam[0, i]
-            for k in range(degree + 1):
-                powers[i, k] = power
-                power *= base
-        for q in range(width):
-            values[out, q] = 0.0
-        a = 0
-        for total in range(degree + 1):
-            for third in range(total + 1):
-                product = powers[0, degree - total] * powers[1, total - third] * powers[2, third]
-                factor = tables.multinomials[0, a] * product
-                for q in range(width):
-                    values[out, q] += factor * nets[f, cell, a, q]
-                a += 1
+def unknowns_of_triangles(start, indices, rows, size):  # type: ignore[no-untyped-def]
+    """The unknowns that the rows of C of each triangle mention: (F + 1,) starts, columns, places of all nonzeros.
+
+    start, indices: of C; rows: how many a triangle has; size: how many unknowns there are. The columns of a triangle
+    increase; the place of a nonzero is that of its unknown among those of its triangle.
+    """
+    faces = (len(start) - 1) // rows
+    first, place = np.zeros(faces + 1, dtype=np.intp), np.empty(len(indices), dtype=np.int32)
+    column = np.empty(len(indices), dtype=np.intp)
+    seen, number = np.full(size, -1, dtype=np.intp), np.empty(size, dtype=np.int32)
+    count = 0
+    for f in range(faces):
+        low, high = start[f * rows], start[(f + 1) * rows]
+        for k in range(low, high):
+            if seen[indices[k]] != f:
+                seen[indices[k]] = f
+                column[count] = indices[k]
+                count += 1
+        own = column[first[f] : count]
+        own.sort()
+        for k in range(len(own)):
+            number[own[k]] = k
+        for k in range(low, high):
+            place[k] = number[indices[k]]
+        first[f + 1] = count
+    return first, column[:count].copy(), place

@@ -11,14 +11,17 @@ from scipy.sparse import csr_array
 from orbiframe.atlas import Points
 from orbiframe.basis import JET_KINDS, DifferentiableBasis
 from orbiframe.bernstein import coefficient_count
-from orbiframe.bernstein_kernels import evaluate_nets, evaluate_values, fill_rows, polynomial_tables
+from orbiframe.bernstein_kernels import evaluate_nets, fill_rows, polynomial_tables, unknowns_of_triangles
 from orbiframe.galerkin import nearest_to_one
 from orbiframe.geodesic_triangulation import GeodesicTriangulation
-from orbiframe.location import Location, Locator
+from orbiframe.location import Location, Locator, require_found
 from orbiframe.quotient import divide_jets
+from orbiframe.spline_values import spline_values
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
+
+_BLOCK = 1024  # points that are located, then evaluated
 
 
 class ElementBasis(DifferentiableBasis):
@@ -85,7 +88,29 @@ class ElementBasis(DifferentiableBasis):
 
     def values(self, points: Points, coefficients: Floats) -> Floats:
         """See `Basis`; evaluated from the Bernstein coefficients, without a design matrix."""
-        return np.asarray(self.jets(points, coefficients, 0)[0])
+        rational = self.weights is not None
+        nets = self.net(coefficients if self.weights is None else np.column_stack([coefficients, self.weights]))
+        tables = polynomial_tables(self.degree)
+        patch, x = np.asarray(points.patch, dtype=np.intp), np.asarray(points.x, dtype=np.float64)
+        values = np.empty((len(x), coefficients.shape[1]))
+        room = (
+            np.empty(_BLOCK, dtype=np.intp),
+            np.empty((_BLOCK, 3)),
+            np.empty(tables.counts[0]),
+            np.empty((3, self.degree + 1)),
+        )
+        failed = spline_values(
+            (patch, x),
+            self.locator.grid,
+            self.locator.steps,
+            self._search,
+            nets.reshape(-1, *nets.shape[2:]),
+            (self.degree, tables.multinomials[0], rational),
+            room,
+            values,
+        )
+        require_found(failed, points)
+        return values
 
     def jets(self, points: Points, coefficients: Floats, order: int) -> Floats:
         """See `DifferentiableBasis`; evaluated from the Bernstein coefficients, without a design matrix."""
@@ -99,12 +124,9 @@ class ElementBasis(DifferentiableBasis):
 
     def _polynomial_jets(self, location: Location, coefficients: Floats, order: int) -> Floats:
         values = np.empty((JET_KINDS[order], len(location.face), coefficients.shape[1]))
-        place, tables = (location, *self._search, self._shape), polynomial_tables(self.degree)
-        if order == 0:
-            evaluate_values(place, self.net(coefficients), tables, values[0])
-        else:
-            evaluate_nets(place, self.net(coefficients), tables, values)
-        return np.asarray(values)
+        place = location, *self._search, self._shape
+        evaluate_nets(place, self.net(coefficients), polynomial_tables(self.degree), values)
+        return values
 
     @cached_property
     def locator(self) -> Locator:
@@ -126,14 +148,9 @@ class ElementBasis(DifferentiableBasis):
     @cached_property
     def _pattern(self) -> tuple[Ints, Ints, Ints]:
         """The unknowns that matter on each triangle: start (F + 1,), columns, and for every nonzero of C its place."""
-        rows_per_face = self.cells.shape[1] * coefficient_count(self.degree)
-        row = np.repeat(np.arange(self.matrix.shape[0]), np.diff(self.matrix.indptr))
-        key = (row // rows_per_face) * np.int64(self.size) + self.matrix.indices
-        found, place = np.unique(key, return_inverse=True)
-        face, column = np.divmod(found, self.size)
-        start = np.searchsorted(face, np.arange(len(self.cells) + 1))
-        slot = place - start[row // rows_per_face]
-        return start, column, slot.astype(np.int32)
+        rows = self.cells.shape[1] * coefficient_count(self.degree)
+        start, column, place = unknowns_of_triangles(self.matrix.indptr, self.matrix.indices, rows, self.size)
+        return start, column, place
 
 
 def _fans(domain: GeodesicTriangulation, cells: Floats) -> Floats:

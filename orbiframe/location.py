@@ -53,19 +53,13 @@ class Locator:
         Raises FitError for a point that is not finite.
         """
         x = np.asarray(points.x, dtype=np.float64)
-        grid, patch = self._grid, np.asarray(points.patch, dtype=np.intp)
-        order = np.arange(len(x))
+        patch, order = np.asarray(points.patch, dtype=np.intp), np.arange(len(x))
         if len(x) >= _MANY:
-            _order_by_cell(patch, x, grid.half_width, grid.face.shape, order)
+            _order_by_cell(patch, x, self.grid.half_width, self.grid.face.shape, order)
             x, patch = x[order], patch[order]
         columns = np.array(self.domain.geometry.carry(x) if frames else x[:, :, None], order="C")
         face = np.empty(len(x), dtype=np.intp)
-        failed = _walk_all(patch, face, columns, self.steps, grid.face, grid.isometry, grid.half_width)
-        if failed >= 0:
-            raise FitError(
-                f"point {order[failed]} (patch {patch[failed]}, x = {x[failed]}) lies in no triangle of X/H; "
-                "give finite points of X, in the frame of a patch"
-            )
+        require_found(_walk_all(patch, face, columns, self.steps, self.grid), Points(patch, x), order)
         return Location(order, face, columns)
 
     @cached_property
@@ -76,7 +70,8 @@ class Locator:
         return np.ascontiguousarray(inverse), self.domain.twin, np.ascontiguousarray(across)
 
     @cached_property
-    def _grid(self) -> _Grid:
+    def grid(self) -> Grid:
+        """Where walks start."""
         atlas, geometry = self.domain.orbifold.atlas, self.domain.geometry
         share = self.domain.face_count / atlas.patch_count
         cells = int(np.clip(np.sqrt(_CELLS_PER_TRIANGLE * share), _LEAST_CELLS, _MOST_CELLS))
@@ -84,7 +79,7 @@ class Locator:
         far = geometry.from_polar(atlas.radius, 0.0)
         half_width = far[:, 1] / (1 + np.abs(far[:, 0])) if geometry.curvature <= 0 else np.ones(atlas.patch_count)
         sides = 2 if geometry.curvature > 0 else 1
-        grid = _Grid(
+        grid = Grid(
             np.empty((atlas.patch_count, sides, cells, cells), dtype=np.intp),
             np.empty((atlas.patch_count, sides, cells, cells, 3, 3)),
             half_width,
@@ -109,8 +104,7 @@ class Locator:
         return face, isometry
 
 
-@dataclass(frozen=True, eq=False)
-class _Grid:
+class Grid(NamedTuple):
     """Starts of walks: triangles (P, sides, n, n) and isometries (P, sides, n, n, 3, 3) from patch to triangle.
 
     The cells divide the square of the given half width (P,) in the chart (x1, x2) / (1 + |x0|); sides: x0 > 0 and < 0.
@@ -119,6 +113,19 @@ class _Grid:
     face: Ints
     isometry: Floats
     half_width: Floats
+
+
+def require_found(failed: int, points: Points, order: Ints | None = None) -> None:
+    """Raise FitError for the point that a walk has found no triangle for, if there is one (failed >= 0).
+
+    order: the numbers of the points, if they are not their places.
+    """
+    if failed >= 0:
+        number = failed if order is None else order[failed]
+        raise FitError(
+            f"point {number} (patch {points.patch[failed]}, x = {points.x[failed]}) lies in no triangle of X/H; "
+            "give finite points of X, in the frame of a patch"
+        )
 
 
 @njit(cache=True)
@@ -150,12 +157,40 @@ def _walk_one(face, columns, inverse, twin, across):  # type: ignore[no-untyped-
     return -1
 
 
-@njit(cache=True)
-def _cell(x0, x1, x2, half_width, cells):  # type: ignore[no-untyped-def]
+@njit(cache=True, error_model="numpy", inline="always")
+def cell_of(x0, x1, x2, half_width, cells):  # type: ignore[no-untyped-def]
+    """The cell of the grid, of `cells` times `cells`, in which a point of a patch lies, or the nearest one."""
     scale = cells / (2 * half_width * (1 + abs(x0)))
     i = min(max(int(x1 * scale + cells / 2), 0), cells - 1)
     j = min(max(int(x2 * scale + cells / 2), 0), cells - 1)
     return i, j
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def walk(face, x0, x1, x2, inverse, twin, across):  # type: ignore[no-untyped-def]
+    """From triangle to triangle until the point is inside: face, the point in its frame, barycentric coordinates.
+
+    The face is -1 where no triangle holds the point.
+    """
+    for _ in range(_MOST_STEPS):
+        a = inverse[face, 0, 0] * x0 + inverse[face, 0, 1] * x1 + inverse[face, 0, 2] * x2
+        b = inverse[face, 1, 0] * x0 + inverse[face, 1, 1] * x1 + inverse[face, 1, 2] * x2
+        c = inverse[face, 2, 0] * x0 + inverse[face, 2, 1] * x1 + inverse[face, 2, 2] * x2
+        total = abs(a + b + c)
+        least = min(a, min(b, c))
+        if least >= -_ON_EDGE * total:
+            return face, x0, x1, x2, a, b, c
+        if not total < np.inf:
+            break
+        # Halfedge c lies opposite corner c + 2.
+        edge = 3 * face + (1 if least == a else 2 if least == b else 0)
+        x0, x1, x2 = (
+            across[edge, 0, 0] * x0 + across[edge, 0, 1] * x1 + across[edge, 0, 2] * x2,
+            across[edge, 1, 0] * x0 + across[edge, 1, 1] * x1 + across[edge, 1, 2] * x2,
+            across[edge, 2, 0] * x0 + across[edge, 2, 1] * x1 + across[edge, 2, 2] * x2,
+        )
+        face = twin[edge] // 3
+    return -1, x0, x1, x2, 0.0, 0.0, 0.0
 
 
 @njit(cache=True)
@@ -168,7 +203,7 @@ def _order_by_cell(patch, x, half_width, shape, order):  # type: ignore[no-untyp
         x0, x1, x2 = x[n, 0], x[n, 1], x[n, 2]
         i, j = 0, 0
         if np.isfinite(x0) and np.isfinite(x1) and np.isfinite(x2):
-            i, j = _cell(x0, x1, x2, half_width[patch[n]], cells)
+            i, j = cell_of(x0, x1, x2, half_width[patch[n]], cells)
         side = 1 if sides > 1 and x0 < 0 else 0
         key[n] = ((patch[n] * sides + side) * cells + i) * cells + j
         start[key[n] + 1] += 1
@@ -180,15 +215,16 @@ def _order_by_cell(patch, x, half_width, shape, order):  # type: ignore[no-untyp
 
 
 @njit(cache=True)
-def _walk_all(patch, face, moved, steps, grid_face, grid_isometry, half_width):  # type: ignore[no-untyped-def]
+def _walk_all(patch, face, moved, steps, grid):  # type: ignore[no-untyped-def]
     """Locate every point; returns the first that has no triangle, or -1."""
+    grid_face, grid_isometry, half_width = grid
     inverse, twin, across = steps
     cells, width = grid_face.shape[2], moved.shape[2]
     for n in range(len(patch)):
         p, columns = patch[n], moved[n]
         if not (np.isfinite(columns[0, 0]) and np.isfinite(columns[1, 0]) and np.isfinite(columns[2, 0])):
             return n
-        i, j = _cell(columns[0, 0], columns[1, 0], columns[2, 0], half_width[p], cells)
+        i, j = cell_of(columns[0, 0], columns[1, 0], columns[2, 0], half_width[p], cells)
         side = 1 if grid_face.shape[1] > 1 and columns[0, 0] < 0 else 0
         g = grid_isometry[p, side, i, j]
         for k in range(width):

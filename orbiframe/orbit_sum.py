@@ -157,7 +157,7 @@ def _versine(curvature, x0, x1, x2, y0, y1, y2):  # type: ignore[no-untyped-def]
     return (v1 * v1 + v2 * v2 + cross * cross) / (1 + x0 * y0 + dot)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _balls(curvature, x, levels):  # type: ignore[no-untyped-def]
     """A ball about each node of the tree: a point in it, and the largest sqrt(versine / 2) to its points.
 
@@ -170,21 +170,24 @@ def _balls(curvature, x, levels):  # type: ignore[no-untyped-def]
             low, high = (k * n) >> level, ((k + 1) * n) >> level
             if low == high:
                 continue
-            mean = np.zeros(3)
+            mean0, mean1, mean2 = 0.0, 0.0, 0.0
             for i in range(low, high):
-                mean += x[i]
+                mean0, mean1, mean2 = mean0 + x[i, 0], mean1 + x[i, 1], mean2 + x[i, 2]
+            share = 1 / (high - low)
             best, middle = np.inf, low
             for i in range(low, high):
-                gap = x[i] * (high - low) - mean
-                if gap @ gap < best:
-                    best, middle = gap @ gap, i
-            o = x[middle]
+                gap0, gap1, gap2 = x[i, 0] - mean0 * share, x[i, 1] - mean1 * share, x[i, 2] - mean2 * share
+                gap = gap0 * gap0 + gap1 * gap1 + gap2 * gap2
+                if gap < best:
+                    best, middle = gap, i
+            o0, o1, o2 = x[middle, 0], x[middle, 1], x[middle, 2]
             far = 0.0
             for i in range(low, high):
-                far = max(far, _versine(curvature, o[0], o[1], o[2], x[i, 0], x[i, 1], x[i, 2]))
-            centre[(1 << level) + k] = o
+                far = max(far, _versine(curvature, o0, o1, o2, x[i, 0], x[i, 1], x[i, 2]))
+            node = (1 << level) + k
+            centre[node, 0], centre[node, 1], centre[node, 2] = o0, o1, o2
             # A little larger, so that rounding never cuts a point off.
-            spread[(1 << level) + k] = np.sqrt(far / 2) * (1 + 1e-6)
+            spread[node] = np.sqrt(far / 2) * (1 + 1e-6)
     return centre, spread
 
 

@@ -7,9 +7,10 @@ import pytest
 import spline_checks as checks
 from numpy.polynomial import Chebyshev
 from orbiframe_bases.bernstein import Bernstein
+from orbiframe_bases.clough_tocher import CloughTocher
 from orbiframe_bases.powell_sabin import PowellSabin2, PowellSabin3, PowellSabin5, PowellSabin6
 
-from orbiframe import ElementBasis, Points, bernstein_values
+from orbiframe import ElementBasis, FitError, Points, bernstein_values
 from orbiframe.galerkin import nearest_to_one
 
 NAMES = ["sphere", "projective plane", "torus", "Klein bottle", "Bolza", "three crosscaps", "one-vertex torus"]
@@ -122,3 +123,28 @@ def test_an_unknown_that_occurs_twice_in_a_triangle_counts_twice() -> None:
     assert matrix.shape[1] == 3
     np.testing.assert_allclose(matrix.sum(axis=1), 1, atol=1e-13)
     assert (np.diff(matrix.indptr) == 3).all()
+
+
+@pytest.mark.parametrize("family", [Bernstein, PowellSabin3, CloughTocher])
+@pytest.mark.parametrize("name", ["sphere", "Bolza", "one-vertex torus"])
+def test_many_points_in_any_order(family: type[ElementBasis], name: str) -> None:
+    """More points than are taken at a time, on whole triangles and on splits in three and in six."""
+    domain = checks.domain(name)
+    basis = family(domain.orbifold, domain)
+    points = checks.quadrature(basis, int(np.sqrt(2500 / np.prod(basis.cells.shape[:2]))) + 1)[0]
+    chosen = np.random.default_rng(1).permutation(len(points.x))[:2500]
+    points = Points(points.patch[chosen], points.x[chosen])
+    coefficients = np.random.default_rng(0).normal(size=(basis.size, 2))
+    assert len(chosen) > 2000
+    np.testing.assert_allclose(
+        basis.values(points, coefficients), basis.design_matrix(points) @ coefficients, atol=1e-11
+    )
+
+
+@pytest.mark.parametrize("bad", [np.nan, -np.inf])
+def test_a_point_that_is_not_finite_is_named(bad: float) -> None:
+    basis = on("ps2", "torus")
+    x = np.tile([1.0, 0.1, 0.1], (1500, 1))
+    x[1400, 1] = bad
+    with pytest.raises(FitError, match="point 1400"):
+        basis.values(Points(np.zeros(1500, dtype=np.intp), x), np.ones((basis.size, 1)))
