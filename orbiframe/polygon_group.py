@@ -21,6 +21,8 @@ Ints = NDArray[np.intp]
 # A point this far (as a sine) beyond a side still counts as on it: rounding must not send it back and forth.
 _ON_SIDE = 1e-12
 _MOST_CROSSINGS = 10_000
+# Coordinates of this size are known to a millionth.
+_FARTHEST = 4e9
 
 
 class PolygonGroup(Group):
@@ -82,10 +84,12 @@ class PolygonGroup(Group):
     def reduce(self, x: ArrayLike) -> tuple[Floats, Floats]:
         """Cross the side that a point is farthest beyond until it is in F.
 
-        Raises GeometryError for a point that cannot be brought to F, because it is not finite or too far away for the
-        precision of the group elements.
+        The result y has an error of some eps e^d in H^2 for a point at the distance d, as x itself has, and the
+        matrix g errors of eps e^d in entries of that size. Raises GeometryError for a point that is not finite, or so
+        far away that fewer than six digits of y are left.
         """
         points = self.geometry.settle(np.asarray(x, dtype=float))
+        _require_digits(points.reshape(-1, 3))
         y = points.reshape(-1, 3).copy()
         g = np.tile(np.eye(3), (len(y), 1, 1))
         outside = np.arange(len(y))
@@ -100,5 +104,14 @@ class PolygonGroup(Group):
             g[outside] = back @ g[outside]
         raise GeometryError(
             f"point {outside[0]}, {points.reshape(-1, 3)[outside[0]]}, does not reach the polygon of '{self.word}' in "
-            f"{_MOST_CROSSINGS} side crossings; give finite points within a distance of about 15 from the origin"
+            f"{_MOST_CROSSINGS} side crossings; give points that are nearer to the origin"
+        )
+
+
+def _require_digits(points: Floats) -> None:
+    size = np.abs(points).max(axis=-1, initial=0.0)
+    if (far := np.flatnonzero(~(size <= _FARTHEST))).size:
+        raise GeometryError(
+            f"point {far[0]}, {points[far[0]]}, has coordinates of the size {size[far[0]]:.3g}; above {_FARTHEST:.0g} "
+            "fewer than six digits of its place in the polygon are left: give finite points that are nearer"
         )

@@ -189,6 +189,30 @@ def test_growth_series_of_surface_groups(text: str, length: int) -> None:
     assert growth_series(regular(text), length) == series([1, *[2] * (half - 1), 1], [1, *inner, 1], length)
 
 
+def one_vertex_word(pairs: int, seed: int) -> Word:
+    """A random word with one vertex: letters in random places with random signs, until one comes out."""
+    rng = np.random.default_rng(seed)
+    while True:
+        letters = np.repeat(np.arange(1, pairs + 1), 2)[rng.permutation(2 * pairs)] * rng.choice([1, -1], 2 * pairs)
+        if len((word := Word(tuple(map(int, letters)))).vertex_cycles) == 1:
+            return word
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.integers(3, 10), st.integers(0, 2**32 - 1))
+def test_random_words_of_up_to_20_letters(pairs: int, seed: int) -> None:
+    """Relations hold, the tree has the growth of the {l, l} tiling, and every word names its element."""
+    word = one_vertex_word(pairs, seed)
+    group, letters = regular(str(word)), 2 * pairs
+    for relation in word.letter_relations:
+        assert np.abs(group.element(relation) - np.eye(3)).max() < 1e-12 * np.cosh(group.polygon.circumradius) ** 2
+    assert growth_series(group, 3) == series([1, *[2] * (pairs - 1), 1], [1, *[2 - letters] * (pairs - 1), 1], 3)
+    found = elements_within(group, 2.2 * group.polygon.inradius)
+    for number in range(len(found)):
+        matrix = found.spin(np.array([number])).matrix[0]
+        assert np.abs(group.element(found.word(number)) - matrix).max() < 1e-11 * np.abs(matrix).max()
+
+
 def test_growth_series_of_a_lattice() -> None:
     group = lattice_group(E2, Word.parse("abAB"), second=(2.3, 1.1))
     assert growth_series(group, 6) == (1, 4, 8, 12, 16, 20, 24)

@@ -5,7 +5,7 @@ from orbiframe_groups.finite import FiniteGroup
 from orbiframe_groups.lattice import lattice_group
 from reference_geometries import GEOMETRIES
 
-from orbiframe import FundamentalPolygon, GeometryError, PolygonGroup, Word, regular_polygon, standard_word
+from orbiframe import FundamentalPolygon, GeometryError, PolygonGroup, Spin, Word, regular_polygon, standard_word
 
 S2, E2, H2 = GEOMETRIES
 
@@ -102,6 +102,26 @@ def test_reduction_keeps_shapes_and_leaves_points_of_the_polygon_alone():
 def test_points_that_cannot_be_reduced_are_named():
     with pytest.raises(GeometryError, match="point 1"):
         regular("abABcdCD").reduce([[1.0, 0.0, 0.0], [1.0, np.nan, 0.0]])
+
+
+@pytest.mark.parametrize("text", ["abABcdCD", "aabbcc"])
+def test_far_points_come_home_to_the_digits_that_they_have(text):
+    """x = g y for long words g, in long double: reduce finds y again up to some eps e^d."""
+    group, rng = regular(text), np.random.default_rng(3)
+    letters = [*range(1, len(text) // 2 + 1), *range(-1, -len(text) // 2 - 1, -1)]
+    for length in (3, 6, 9):
+        y = H2.from_polar(rng.uniform(0, 1, 30), rng.uniform(0, 6, 30))
+        for here in y:
+            g = group.element_spin(tuple(rng.choice(letters, length)))
+            x = (g @ Spin.translation(-1, here)).place
+            if x[0] < 1e9:
+                assert H2.distance(group.reduce(x)[0], here) < 1e-14 * x[0] + 1e-13
+
+
+def test_points_whose_digits_are_lost_are_refused():
+    x = H2.from_polar(np.array([1.0, 24.0]), 0.3)
+    with pytest.raises(GeometryError, match="point 1"):
+        regular("abABcdCD").reduce(x)
 
 
 def test_elements_of_words():
