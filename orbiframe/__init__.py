@@ -5,8 +5,10 @@ on first use, so that importing orbiframe loads no numpy.
 """
 
 import ast
+import sys
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 
 def _homes() -> dict[str, str]:
@@ -26,6 +28,17 @@ def __getattr__(name: str) -> object:
         raise AttributeError(f"module 'orbiframe' has no attribute '{name}'")
     value = globals()[name] = _version() if name == "__version__" else getattr(import_module(_HOME[name]), name)
     return value
+
+
+class _Facade(ModuleType):
+    """The package, whose public names stay what they are where a module of the same name is imported."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if not (isinstance(value, ModuleType) and name in _HOME):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Facade
 
 
 def __dir__() -> list[str]:

@@ -58,6 +58,11 @@ class Tessellation:
         """Number of faces of X/H."""
         return sum(len(faces.patch) for faces in self.faces)
 
+    @property
+    def edge_count(self) -> float:
+        """Number of edges of X/H."""
+        return sum(faces.corners[..., 0].size for faces in self.faces) / 2
+
     @cached_property
     def edge_length(self) -> float:
         """The median length of the sides of faces."""

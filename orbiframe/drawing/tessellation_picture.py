@@ -14,12 +14,15 @@ from orbiframe.drawing.models import Model, model_of
 from orbiframe.drawing.page import WIDTH, Page
 from orbiframe.drawing.picture import Item, Picture, Shape, chained
 from orbiframe.drawing.tessellation import Copies, Tessellation
+from orbiframe.drawing.tiles import disc_area
+from orbiframe.errors import UsageError
 
 Floats = NDArray[np.float64]
 
 _DARK, _TINT = line_colour(1), 0.13
 # Shorter edges, in points, are left out far away, and a picture has about so many at most.
 _SHORTEST, _MOST_EDGES = 1.3, 6000
+_FAR_TOO_MANY = 500_000
 # Widths of lines, in points, for edges of at least these lengths on the page.
 _WIDTHS = ((14.0, 0.55), (7.0, 0.4), (3.0, 0.28), (0.0, 0.18))
 _HOME_WIDTH = 0.8
@@ -41,6 +44,8 @@ def tessellation_picture(
     picture, see `Tessellation.copies`. Edges are geodesics, whatever runs between their ends on the polyhedron.
     """
     chosen = model_of(tessellation.geometry, model)
+    if radius is not None:
+        _require_few(tessellation, radius)
     copies = list(tessellation.copies(_radius(tessellation) if radius is None else radius, patch, centre))
     return _TessellationPicture(copies, chosen, _half_width(copies, chosen), width).picture()
 
@@ -50,13 +55,21 @@ def _radius(tessellation: Tessellation) -> float:
     curvature, area = tessellation.geometry.curvature, tessellation.orbifold.area
     if curvature > 0:
         return float(np.pi)
-    edges = sum(faces.corners[..., 0].size for faces in tessellation.faces) / 2
-    periods = max(_MOST_EDGES / edges, 3.0)
+    periods = max(_MOST_EDGES / tessellation.edge_count, 3.0)
     if curvature == 0:
         return float(1.5 * np.sqrt(min(periods, 12.0) * area))
     # A length l at the distance d has about WIDTH / 4 / cosh(d / 2)^2 times l on the page.
     told = np.arccosh(max(np.sqrt(WIDTH / 4 * tessellation.edge_length / _SHORTEST), 1.0)) * 2
     return float(max(min(told, np.arccosh(1 + periods * area / (2 * np.pi))), np.arccosh(1 + 3 * area / (2 * np.pi))))
+
+
+def _require_few(tessellation: Tessellation, radius: float) -> None:
+    edges = disc_area(tessellation.geometry.curvature, radius) / tessellation.orbifold.area * tessellation.edge_count
+    if not 0 <= edges <= _FAR_TOO_MANY or not radius >= 0:
+        raise UsageError(
+            f"about {edges:.2g} edges lie in the disc of radius {radius:g}, and a picture shows at most "
+            f"{_FAR_TOO_MANY}; take another radius"
+        )
 
 
 def _half_width(copies: list[Copies], model: Model) -> float:

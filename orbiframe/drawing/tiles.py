@@ -37,7 +37,7 @@ def tiles_within(group: Group, radius: float) -> Tiles:
     """The tiles that meet the disc of a radius about the origin. Raises UsageError for too many."""
     if not radius >= 0:
         raise UsageError(f"a radius of {radius} was asked for; give a length that is not negative")
-    estimate = _disc_area(group.geometry.curvature, radius) / group.area
+    estimate = disc_area(group.geometry.curvature, radius) / group.area
     if estimate > MOST_TILES:
         raise UsageError(
             f"about {estimate:.2g} tiles meet the disc of radius {radius:g}, and a picture shows at most {MOST_TILES}; "
@@ -60,7 +60,8 @@ def nearest_tiles(group: Group, count: int) -> Tiles:
     return _with_words(group, found[: ends[ends <= count].max()])
 
 
-def _disc_area(curvature: int, radius: float) -> float:
+def disc_area(curvature: int, radius: float) -> float:
+    """The area of a disc in the plane of curvature 1, 0 or -1."""
     if curvature == 0:
         return float(np.pi * radius**2)
     if curvature > 0:

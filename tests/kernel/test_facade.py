@@ -37,3 +37,9 @@ def test_type_checkers_see_the_same_names():
     tree = ast.parse(Path(orbiframe.__file__).with_suffix(".pyi").read_text())
     imports = [node for node in tree.body if isinstance(node, ast.ImportFrom)]
     assert sorted(alias.name for node in imports for alias in node.names) == orbiframe.__all__
+
+
+def test_a_public_name_is_not_hidden_by_the_module_of_the_same_name():
+    """Whichever of the two is imported first."""
+    code = "import orbiframe.delaunay; from orbiframe import delaunay; assert callable(delaunay)"
+    subprocess.run([sys.executable, "-c", code], check=True)
