@@ -77,11 +77,11 @@ def group_picture(
     if isinstance(chosen, Solid):
         chosen = replace(chosen, height=_RIM * float(np.cosh(cell.circumradius)))
     if radius is not None:
-        shown = tiles_within(group, radius)
+        shown = tiles_within(group, cell, radius)
     elif tiles is None and isinstance(chosen, Solid) and group.geometry.curvature < 0:
-        shown = tiles_within(group, float(np.arccosh(chosen.height)))
+        shown = tiles_within(group, cell, float(np.arccosh(chosen.height)))
     else:
-        shown = _default_tiles(group, cell) if tiles is None else nearest_tiles(group, tiles)
+        shown = _default_tiles(group, cell) if tiles is None else nearest_tiles(group, cell, tiles)
     return GroupPicture(cell, shown, chosen, with_motif, function, points).picture()
 
 
@@ -89,13 +89,13 @@ def _default_tiles(group: Group, cell: Cell) -> Tiles:
     """As many as fill the window, or in H^2 as far as tiles can be told apart."""
     curvature, radius = group.geometry.curvature, cell.circumradius
     if curvature == 0:
-        return tiles_within(group, np.sqrt(2) * _WINDOW * radius)
+        return tiles_within(group, cell, np.sqrt(2) * _WINDOW * radius)
     if curvature > 0:
-        return tiles_within(group, np.pi)
+        return tiles_within(group, cell, np.pi)
     # A tile at the distance d has about WIDTH / 2 / cosh(d / 2)^2 times its circumradius on the page.
     far = 2 * np.arccosh(np.sqrt(max(WIDTH / 2 * radius / _SMALLEST, 1.0)))
     count = 2 * np.pi * (np.cosh(far) - 1) / group.area
-    return nearest_tiles(group, int(np.clip(count, *_COUNTS)))
+    return nearest_tiles(group, cell, int(np.clip(count, *_COUNTS)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,8 +152,9 @@ class GroupPicture:
             yield Shape(paths, True, shade, INK, width, clip=self.page.window)
         if self.motif:
             elements = self.tiles.elements[self._sizes > _MOTIF_LEAST]
-            motifs = self.page.paths(np.einsum("kij,mj->kmi", elements, self.cell.motif))
-            yield Shape(motifs, True, fill=INK, opacity=0.55, clip=self.page.window)
+            motifs = np.einsum("kij,mj->kmi", elements, self.cell.motif)
+            whole = [np.array_equal(self.model.front(motif, True), motif) for motif in motifs]
+            yield Shape(self.page.paths(motifs[whole]), True, fill=INK, opacity=0.55, clip=self.page.window)
 
     def _fill(self, tile: int) -> str:
         """Paper for F; the colours of the first sides for the others, stronger and weaker in turn."""
@@ -169,10 +170,10 @@ class GroupPicture:
             curves = self.page.paths(np.concatenate([pieces[:, 0], pieces[-1:, 1]])[None], closed=False)
             yield Shape(curves, stroke="#ffffff", width=4.2)
             yield Shape(curves, stroke=self._colour(letter), width=2.4)
-            if curves and not mirror:
+            if curves and self.cell.named and not mirror:
                 yield self._arrow(curves[0], letter)
-        corners = self.page.place(self.cell.corners[:: self.cell.pieces])
-        dots = [list(circle(corner, 2.2)) for corner in corners]
+        corners = [x for x in self.cell.corners[:: self.cell.pieces] if len(self.model.front(x[None], False))]
+        dots = [circle(self.page.place(corner), 2.2) for corner in corners]
         yield Shape(dots, True, fill=INK)
 
     def _colour(self, letter: int) -> str:
@@ -219,7 +220,7 @@ class GroupPicture:
         """Letters inside F, beside the middles of their sides."""
         centre = self.page.place(self.cell.geometry.origin)
         for letter, middle in zip(self.cell.letters, self.cell.middles, strict=True):
-            if not len(self.model.front(middle[None], False)):
+            if not self.cell.named or not len(self.model.front(middle[None], False)):
                 continue
             at = self.page.place(middle)
             inward = (centre - at) / np.linalg.norm(centre - at)

@@ -44,6 +44,10 @@ def group_of(text):
     return REGISTRY.load("group", NAMES[sign])(GEOMETRY[sign], word)
 
 
+def nearest(group, count):
+    return nearest_tiles(group, cell_of(group), count)
+
+
 def points(geometry, seed, count=6, reach=2.0):
     rng = np.random.default_rng(seed)
     limit = min(reach, 1.4) if geometry.curvature > 0 else reach
@@ -120,7 +124,7 @@ def test_the_sphere_hides_what_is_behind():
 @pytest.mark.parametrize(("text", "sides"), [("abABcdCD", 8), ("aabbcc", 6), ("abAB", 4)])
 def test_word_lengths_are_the_growth_of_the_tiling(text, sides):
     """1 tile, then one behind each side, then those next to them (spheres of the dual graph)."""
-    tiles = nearest_tiles(group_of(text), 300)
+    tiles = nearest(group_of(text), 300)
     counts = np.bincount(tiles.length)
     # In {l, l} with l > 4 every tile of the first sphere has l - 1 new neighbours and none of them is shared.
     assert counts[:2].tolist() == [1, sides]
@@ -132,7 +136,7 @@ def test_word_lengths_are_the_growth_of_the_tiling(text, sides):
 
 
 def test_lengths_in_the_square_lattice_are_sums_of_steps():
-    tiles = tiles_within(group_of("abAB"), 3.2)
+    tiles = tiles_within(group_of("abAB"), cell_of(group_of("abAB")), 3.2)
     steps = np.abs(np.round(tiles.elements[:, 1:, 0])).sum(axis=1)
     # Near the border of the disc the way may lead out of it, never where both neighbours are within.
     assert (tiles.length == steps).all()
@@ -238,7 +242,7 @@ def test_a_motif_shows_which_elements_reverse_orientation():
     for path in motif.paths:
         x, y = np.array([curve.points[0] for curve in path]).T
         area.append(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
-    parity = group.geometry.parity(nearest_tiles(group, 9).elements)
+    parity = group.geometry.parity(nearest(group, 9).elements)
     assert np.sign(area).tolist() == (parity * np.sign(area[0])).tolist()
     assert set(parity) == {-1.0, 1.0}
 
@@ -287,6 +291,24 @@ def test_colours_of_values_are_white_at_zero_and_differ_by_sign():
     assert colours[1].tolist() == [255, 255, 255]
     assert colours[0][2] > colours[0][0]
     assert colours[2][0] > colours[2][2]
+
+
+ORDERS = {"*": 2, "x": 2, "22": 2, "*33": 6, "3x": 6, "2*": 4, "222": 4, "*222": 8, "332": 12, "*532": 120, "3*2": 24}
+
+
+@pytest.mark.parametrize("text", ORDERS)
+def test_cells_of_spherical_groups_have_the_area_of_the_sphere_over_the_order(text):
+    group = orbifold_group(S2, Signature.parse(text))
+    cell = cell_of(group)
+    fan = S2.triangle_area(S2.origin, cell.corners, np.roll(cell.corners, -1, axis=0))
+    assert fan.sum() == pytest.approx(4 * np.pi / ORDERS[text], rel=1e-9)
+    tiles = nearest_tiles(group, cell, 200)
+    assert len(tiles.elements) == ORDERS[text]
+    assert (tiles.length >= 0).all()
+    # Across a side lies the tile of its neighbour: the side is nearer to no other.
+    distance = S2.distance(cell.middles, S2.origin)
+    assert S2.distance(cell.middles, cell.neighbours[:, :, 0]) == pytest.approx(distance, abs=1e-7)
+    assert group_picture(group).shapes
 
 
 # ---- functions and points -------------------------------------------------------------------------------------------
