@@ -41,17 +41,19 @@ def _parent_side(x0, x1, x2, covectors, size, heights):  # type: ignore[no-untyp
 
 
 @njit(cache=True, inline="always")
-def _clearly_beyond(x0, x1, x2, side, covectors, rivals, rival_count, size):  # type: ignore[no-untyped-def]
-    """Whether x is beyond a side, and farther than beyond the sides whose lines cross it, with no tie in sight."""
+def _is_parent(x0, x1, x2, side, covectors, rivals, rival_count, size):  # type: ignore[no-untyped-def]
+    """1 if x is beyond a side and farther than beyond those that cross it, 0 if not; -1 where a tie is in sight."""
     margin = 2 * TIE * size * (abs(x0) + abs(x1) + abs(x2))
-    height = covectors[side, 0] * x0 + covectors[side, 1] * x1 + covectors[side, 2] * x2 - margin
-    if height < 0:
-        return False
+    height = covectors[side, 0] * x0 + covectors[side, 1] * x1 + covectors[side, 2] * x2
+    clear = 1 if height > margin else -1
     for k in range(rival_count[side]):
         s = rivals[side, k]
-        if covectors[s, 0] * x0 + covectors[s, 1] * x1 + covectors[s, 2] * x2 > height:
-            return False
-    return True
+        other = covectors[s, 0] * x0 + covectors[s, 1] * x1 + covectors[s, 2] * x2
+        if other > height + margin and other > margin:
+            return 0
+        if other > height - margin:
+            clear = -1
+    return clear
 
 
 @njit(cache=True)
@@ -144,7 +146,10 @@ def grow(k, generators, mate, covectors, bounding, reach, rim, depth, room, most
             x = -2 * a * b.conjugate() if reverses else -2 * a.conjugate() * b
             x0 = a.real * a.real + a.imag * a.imag - k * square
             side = mate[s]
-            if not _clearly_beyond(x0, x.real, x.imag, side, covectors, rivals, rival_count, size):
+            clear = _is_parent(x0, x.real, x.imag, side, covectors, rivals, rival_count, size)
+            if clear == 0:
+                continue
+            if clear < 0:
                 side = _parent_side(x0, x.real, x.imag, covectors, size, heights)
             if side == -2:
                 return tree, n + 1, TIED
