@@ -25,7 +25,7 @@ def cell_triangulation(group: Group) -> GeodesicTriangulation:
     orbifold = Orbifold(group.atlas(), word.euler_characteristic, word.orientable, group.area)
     if isinstance(group, PolygonGroup):
         return _fan(orbifold, group)
-    if group.geometry.curvature > 0:
+    if group.geometry.curvature > 0 and np.isclose(group.area, 2 * np.pi * word.euler_characteristic):
         return _octahedron(orbifold)
     raise GeometryError(f"the group of '{word}' has no fundamental polygon; use a PolygonGroup or a mesh")
 

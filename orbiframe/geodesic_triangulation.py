@@ -140,8 +140,8 @@ class GeodesicTriangulation:
 
     @cached_property
     def reference(self) -> Bools:
-        """One halfedge of every edge is marked, (3 F,): the smaller of the two."""
-        return np.arange(3 * self.face_count) < self.twin
+        """One halfedge of every edge is marked, (3 F,): the smaller of the two; a mirror is its own twin."""
+        return np.arange(3 * self.face_count) <= self.twin
 
     @cached_property
     def edge(self) -> Ints:
@@ -152,7 +152,7 @@ class GeodesicTriangulation:
     @property
     def edge_count(self) -> int:
         """Number of edges."""
-        return 3 * self.face_count // 2
+        return int(self.reference.sum())
 
     @property
     def euler_characteristic(self) -> int:

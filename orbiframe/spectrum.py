@@ -95,7 +95,7 @@ def eigenfunction(domain: GeodesicTriangulation, family: Family, number: int) ->
     if number < 0:
         raise FitError(f"eigenfunction {number} is wanted; they are counted from 0, the constant one")
     count = number + _MARGIN
-    space = family(_resolving(domain, 4 * np.pi * count / domain.orbifold.area), _DEGREES[0])
+    space = family(_resolving(domain, count), _DEGREES[0])
     values, coefficients = eigenfunctions(space, count)
     return space, coefficients[:, number : number + 1], float(values[number])
 

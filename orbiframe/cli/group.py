@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from orbiframe.cli.destination import require_folder
-from orbiframe.cli.symbol import describe_symbol, is_symbol, symbol_lines
+from orbiframe.cli.symbol import describe_symbol, is_symbol, symbol_group, symbol_rows
 from orbiframe.errors import UsageError
 from orbiframe.registry import Registry
 
@@ -50,13 +50,13 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
         raise UsageError(f"--spectrum {args.spectrum}: ask for at least 1 eigenvalue")
     _require_picture(args)
     if is_symbol(args.word):
-        about = describe_symbol(args, registry)
-        print(json.dumps(about) if args.json else "\n".join(symbol_lines(about)))
-        return 0
-    word = word_named(args.word)
-    found = _described(word)
-    if args.systole or args.spectrum or args.draw:
-        found.update(_computed(args, _group(word, args.polygon, registry), registry))
+        orbifold = symbol_group(args, registry)
+        found = describe_symbol(orbifold, args.word) | _computed(args, orbifold, registry)
+    else:
+        word = word_named(args.word)
+        found = _described(word)
+        if args.systole or args.spectrum or args.draw:
+            found.update(_computed(args, _group(word, args.polygon, registry), registry))
     print(json.dumps(found) if args.json else "\n".join(_lines(found)))
     return 0
 
@@ -163,6 +163,11 @@ def _polynomials(registry: Registry) -> Any:
 
 def _lines(found: dict[str, Any]) -> list[str]:
     """The same in words."""
+    rows = symbol_rows(found) if "symbol" in found else _word_rows(found)
+    return [f"{name:<10}{text}" for name, text in rows + _computed_rows(found)]
+
+
+def _word_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
     surface = found["surface"]
     rows = [
         ("word", found["word"]),
@@ -173,6 +178,11 @@ def _lines(found: dict[str, Any]) -> list[str]:
     if standard := found.get("standard"):
         rows += [("standard", standard["word"]), ("", f"with {_equations(standard['letters'])}")]
         rows += [("", f"and {_equations(standard['given'])}")]
+    return rows
+
+
+def _computed_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
+    rows = []
     if shortest := found.get("systole"):
         rows.append(("systole", f"{shortest['length']:.12g}, {shortest['multiplicity']} closed geodesics"))
     rows += [
@@ -183,7 +193,7 @@ def _lines(found: dict[str, Any]) -> list[str]:
         rows.append(("function", f"{found['function']['number']}, eigenvalue {found['function']['eigenvalue']:.9g}"))
     if "picture" in found:
         rows.append(("picture", found["picture"]))
-    return [f"{name:<10}{text}" for name, text in rows]
+    return rows
 
 
 def _equations(change: dict[str, str]) -> str:

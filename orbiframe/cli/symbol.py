@@ -10,11 +10,11 @@ from orbiframe.errors import UsageError
 from orbiframe.registry import Registry
 
 if TYPE_CHECKING:
+    from orbiframe.signature import Signature
     from orbiframe.spherical_group import SphericalGroup
     from orbiframe.symmetry_group import SymmetryGroup
 
 _GEOMETRY = {1: "s2", 0: "e2", -1: "h2"}
-_CLOSED_SURFACES = ("systole", "spectrum", "function")
 
 
 def is_symbol(text: str) -> bool:
@@ -22,20 +22,23 @@ def is_symbol(text: str) -> bool:
     return bool(re.fullmatch(r"[\d*∗xX×o∘(),\s]+", text)) and not re.search("x.*X|X.*x", text)
 
 
-def describe_symbol(args: argparse.Namespace, registry: Registry) -> dict[str, Any]:
-    """The orbifold, its group and its cell, and a picture if asked for."""
+def symbol_group(args: argparse.Namespace, registry: Registry) -> SymmetryGroup | SphericalGroup:
+    """The group of the orbifold of a symbol."""
     from orbiframe.signature import Signature
     from orbiframe.symmetry_group import orbifold_group
-    from orbiframe.word import text_of
 
     signature = Signature.parse(args.word)
-    _require_supported(args)
-    if args.draw and signature.order:
-        raise UsageError(
-            f"--draw has no picture of the finite group '{signature}'; draw one of the plane, such as *632"
-        )
-    group = orbifold_group(registry.load("geometry", _GEOMETRY[signature.curvature])(), signature)
-    found = {
+    _require_supported(args, signature)
+    return orbifold_group(registry.load("geometry", _GEOMETRY[signature.curvature])(), signature)
+
+
+def describe_symbol(group: SymmetryGroup | SphericalGroup, text: str) -> dict[str, Any]:
+    """The orbifold of a symbol, its group and its cell."""
+    from orbiframe.signature import Signature
+    from orbiframe.word import text_of
+
+    signature = Signature.parse(text)
+    return {
         "symbol": str(signature),
         "orbifold": {
             "name": signature.name,
@@ -49,40 +52,33 @@ def describe_symbol(args: argparse.Namespace, registry: Registry) -> dict[str, A
         "generators": [{"letter": text_of(k), "kind": _kind(group, k)} for k in group.relations.generators],
         "relations": list(group.relations.texts),
     }
-    if args.draw:
-        from orbiframe.drawing.group_picture import draw_group
-
-        draw_group(group, args.draw, model=args.model, radius=args.radius, tiles=args.tiles, function=None)
-        found["picture"] = str(args.draw)
-    return found
 
 
-def symbol_lines(found: dict[str, Any]) -> list[str]:
+def symbol_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
     """The same in words."""
     orbifold = found["orbifold"]
-    rows = [
+    place = f"in {orbifold['geometry']}, Euler characteristic {orbifold['euler_characteristic']}"
+    return [
         ("symbol", found["symbol"]),
-        (
-            "orbifold",
-            f"{orbifold['name']} in {orbifold['geometry']}, Euler characteristic {orbifold['euler_characteristic']}",
-        ),
+        ("orbifold", f"{orbifold['name']} {place}"),
         ("order", "infinite" if found["order"] is None else str(found["order"])),
         ("area", f"{found['area']:.12g}"),
         ("polygon", found["polygon"]),
-        ("generators", ", ".join(f"{g['letter']} ({g['kind']})" for g in found["generators"])),
+        ("letters", ", ".join(f"{g['letter']} ({g['kind']})" for g in found["generators"])),
         ("relations", ", ".join(f"{relation} = 1" for relation in found["relations"])),
     ]
-    rows += [("picture", found["picture"])] if "picture" in found else []
-    return [f"{name:<10} {text}" for name, text in rows]
 
 
-def _require_supported(args: argparse.Namespace) -> None:
-    for name in _CLOSED_SURFACES:
-        if getattr(args, name, None):
-            raise UsageError(
-                f"--{name} is for closed surfaces; write the surface as a gluing word, such as abABcdCD, instead of "
-                f"the symbol '{args.word}'"
-            )
+def _require_supported(args: argparse.Namespace, signature: Signature) -> None:
+    """Raise UsageError for what only groups without fixed points, or only infinite groups, have."""
+    if args.systole:
+        raise UsageError(
+            f"--systole is for closed surfaces; write the surface as a gluing word, such as abABcdCD, instead of the "
+            f"symbol '{args.word}'"
+        )
+    for name in ("spectrum", "draw"):
+        if signature.order and getattr(args, name):
+            raise UsageError(f"--{name} is for infinite groups; '{signature}' has {signature.order} elements")
 
 
 def _kind(group: SymmetryGroup | SphericalGroup, label: int) -> str:

@@ -35,8 +35,8 @@ def test_a_symbol_is_described_in_json(orbiframe, symbol, geometry, chi, order, 
 def test_generators_and_relations_are_printed(orbiframe):
     ran = orbiframe("group", "*2 3 12")
     assert ran.status == 0
-    assert "symbol     *23(12)" in ran.out
-    assert "generators a (reflection), b (reflection), c (reflection)" in ran.out
+    assert "symbol    *23(12)" in ran.out
+    assert "letters   a (reflection), b (reflection), c (reflection)" in ran.out
     assert "(bc)^12 = 1" in ran.out
 
 
@@ -54,8 +54,9 @@ def test_an_orbifold_is_drawn(orbiframe, tmp_path, symbol):
     [
         (["23"], "bad orbifold"),
         (["*203"], "order 0"),
-        (["*237", "--spectrum", "3"], "--spectrum is for closed surfaces"),
-        (["*532", "--draw", "ball.svg"], "finite group"),
+        (["*237", "--systole"], "--systole is for closed surfaces"),
+        (["*532", "--draw", "ball.svg"], "*532' has 120 elements"),
+        (["532", "--spectrum", "3"], "for infinite groups"),
         (["bolzas"], "Did you mean 'bolza'"),
     ],
 )
@@ -64,6 +65,29 @@ def test_what_cannot_be_is_refused_in_words(orbiframe, tmp_path, monkeypatch, ar
     ran = orbiframe("group", *arguments)
     assert ran.status != 0
     assert problem in ran.err
+
+
+@pytest.mark.parametrize(
+    ("symbol", "expected"),
+    [
+        # cos(pi m x) cos(pi n y) on the unit square with free boundary.
+        ("*2222", [(0, 1), (np.pi**2, 2), (2 * np.pi**2, 1)]),
+        # Half of it with the area 1 along the diagonal, and the square again as its double.
+        ("*442", [(0, 1), (np.pi**2 / 2, 1), (np.pi**2, 1)]),
+        ("2222", [(0, 1), (2 * np.pi**2, 2), (4 * np.pi**2, 2)]),
+        # The same for the triangle and its double: the least function of 237 is symmetric.
+        ("*237", [(0, 1), (44.88835360397, 1)]),
+        ("237", [(0, 1), (44.88835360397, 1)]),
+    ],
+)
+def test_the_spectrum_of_an_orbifold(orbiframe, symbol, expected):
+    """With derivative zero across mirrors."""
+    ran = orbiframe("group", symbol, "--spectrum", len(expected), "--json")
+    assert (ran.status, ran.err) == (0, "")
+    found = json.loads(ran.out)["spectrum"]
+    for line, (value, multiplicity) in zip(found, expected, strict=True):
+        assert line["value"] == pytest.approx(value, abs=1e-9)
+        assert line["multiplicity"] == multiplicity
 
 
 def test_a_word_is_reduced_with_the_change_of_its_letters(orbiframe):

@@ -16,12 +16,14 @@ from orbiframe import (
     SymmetryGroup,
     SymmetryPolygon,
     TopologyError,
+    cell_triangulation,
     orbifold_cell,
     orbifold_group,
     orbifold_of,
     stabilizer,
 )
 from orbiframe.signature import PLANE_GROUPS
+from orbiframe.testing import Lab, contract_tests, group_laws
 
 S2, E2, H2 = GEOMETRIES
 GEOMETRY = {1: S2, 0: E2, -1: H2}
@@ -277,3 +279,54 @@ def test_an_octagon_with_half_the_angle_has_a_cone_point_of_order_2():
 def test_a_wrong_geometry_is_refused(text, geometry):
     with pytest.raises(GeometryError, match="Euler characteristic"):
         orbifold_group(geometry, Signature.parse(text))
+
+
+def test_a_spherical_cell_is_not_taken_for_the_whole_sphere():
+    with pytest.raises(GeometryError, match="no fundamental polygon"):
+        cell_triangulation(group_of("532"))
+    assert cell_triangulation(group_of("x")).area_defect < 1e-12
+
+
+# ---- the laws of the kit --------------------------------------------------------------------------------------------
+
+
+def closed_surface(geometry, word):
+    """The group of the surface of a word, by its symbol."""
+    deficit = 2 - word.euler_characteristic
+    return orbifold_group(
+        geometry, Signature(handles=deficit // 2) if word.orientable else Signature(crosscaps=deficit)
+    )
+
+
+test_closed_surfaces_keep_the_laws = contract_tests("group", closed_surface)
+
+SINGULAR = ["532", "*332", "3*2", "5x", "4*2", "22x", "*632", "*x", "237", "*237", "2*23"]
+LAWS = [
+    group_laws.pairings_are_isometries,
+    group_laws.twins_are_inverse,
+    group_laws.orientation_matches_the_word,
+    group_laws.reduction_is_idempotent_and_invariant,
+    group_laws.tiles_cover_a_disc_once,
+]
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.__name__)
+@pytest.mark.parametrize("text", SINGULAR)
+def test_singular_orbifolds_keep_the_laws_that_allow_fixed_points(law, text, monkeypatch, tmp_path):
+    monkeypatch.setattr(group_laws, "_groups", lambda component: iter([component]))
+    law(group_of(text), Lab(tmp_path))
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.__name__)
+def test_every_such_law_rejects_its_mutant(law, monkeypatch, tmp_path):
+    monkeypatch.setattr(group_laws, "_groups", lambda component: iter([component(None, None)]))
+    mutant = group_laws.MUTANTS[law.__name__](lambda *_: group_of("2*23"))
+    with pytest.raises(AssertionError):
+        law(mutant, Lab(tmp_path))
+
+
+@pytest.mark.parametrize("text", SINGULAR)
+def test_the_law_that_nothing_is_fixed_is_broken(text, monkeypatch, tmp_path):
+    monkeypatch.setattr(group_laws, "_groups", lambda component: iter([component]))
+    with pytest.raises(AssertionError, match="is in the group"):
+        group_laws.elements_have_no_fixed_point(group_of(text), Lab(tmp_path))
