@@ -17,7 +17,7 @@ from orbiframe.drawing.file import require_picture_file, save_picture
 from orbiframe.drawing.function_image import Function, function_image
 from orbiframe.drawing.models import Chart, Model, Solid, model_of
 from orbiframe.drawing.page import WIDTH, Page
-from orbiframe.drawing.picture import Curve, Item, Label, Picture, Shape, arrowhead, circle
+from orbiframe.drawing.picture import Curve, Item, Label, Picture, Shape, arrowhead, chained, circle
 from orbiframe.drawing.tiles import Tiles, nearest_tiles, tiles_within
 from orbiframe.errors import UsageError
 from orbiframe.group import Group
@@ -167,12 +167,14 @@ class GroupPicture:
     def _sides(self) -> Iterator[Item]:
         """The sides of F, thick and in the colours of their letters, with arrows but on mirrors."""
         for letter, pieces, mirror in zip(self.cell.letters, self.cell.sides, self.cell.mirrors, strict=True):
-            curves = self.page.paths(np.concatenate([pieces[:, 0], pieces[-1:, 1]])[None], closed=False)
+            curves = chained(curve for path in self.page.paths(pieces, closed=False) for curve in path)
             yield Shape(curves, stroke="#ffffff", width=4.2)
             yield Shape(curves, stroke=self._colour(letter), width=2.4)
             if curves and self.cell.named and not mirror:
                 yield self._arrow(curves[0], letter)
-        corners = [x for x in self.cell.corners[:: self.cell.pieces] if len(self.model.front(x[None], False))]
+        # A whole great circle has no corner: its pieces only make it up.
+        ends = self.cell.corners[:: self.cell.pieces] if len(self.cell.letters) > 1 else self.cell.corners[:0]
+        corners = [x for x in ends if len(self.model.front(x[None], False))]
         dots = [circle(self.page.place(corner), 2.2) for corner in corners]
         yield Shape(dots, True, fill=INK)
 
