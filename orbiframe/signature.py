@@ -46,14 +46,6 @@ _POINT_GROUPS = {
     "532": "I",
     "*532": "Ih",
 }
-_FAMILIES = (
-    (r"(\d+)22", "D{}"),
-    (r"\*(\d+)22", "D{}h"),
-    (r"2\*(\d+)", "D{}d"),
-    (r"(\d+)\*", "C{}h"),
-    (r"\*(\d+)", "C{}v"),
-    (r"(\d+)", "C{}"),
-)
 
 
 @dataclass(frozen=True)
@@ -158,12 +150,13 @@ class Signature:
     def _family(self) -> str:
         """The Schoenflies name of a group of one of the seven families."""
         chosen = self.canonical
+        corners = chosen.mirrors[0] if chosen.mirrors else ()
         if chosen.crosscaps:
             return f"S{2 * chosen.cones[0]}"
-        orders = chosen.cones or chosen.mirrors[0]
-        plain = Signature.__str__(chosen) if len(orders) != 2 else ("*" if chosen.mirrors else "") + f"{orders[0]}"
-        plain = re.sub(r"[()]", "", plain)
-        return next(name.format(found[1]) for form, name in _FAMILIES if (found := re.fullmatch(form, plain)))
+        if chosen.cones and chosen.mirrors:
+            return f"D{corners[0]}d" if corners else f"C{chosen.cones[0]}h"
+        orders, ending = (corners, "hv") if corners else (chosen.cones, ("", ""))
+        return f"D{orders[0]}{ending[0]}" if len(orders) == 3 else f"C{orders[0]}{ending[1]}"
 
 
 def _tokens(text: str) -> Iterable[tuple[str, int]]:

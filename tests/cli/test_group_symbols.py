@@ -90,6 +90,12 @@ def test_the_spectrum_of_an_orbifold(orbiframe, symbol, expected):
         assert line["multiplicity"] == multiplicity
 
 
+def test_an_eigenfunction_of_a_triangle_is_drawn(orbiframe, tmp_path):
+    ran = orbiframe("group", "*442", "--draw", tmp_path / "function.svg", "--function", 1, "--json")
+    assert (ran.status, ran.err) == (0, "")
+    assert json.loads(ran.out)["function"]["eigenvalue"] == pytest.approx(np.pi**2 / 2, rel=1e-6)
+
+
 def test_a_word_is_reduced_with_the_change_of_its_letters(orbiframe):
     found = json.loads(orbiframe("group", "abcdABCD", "--json").out)["standard"]
     assert found["word"] == "abABcdCD"
