@@ -70,13 +70,8 @@ def symbol_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
 
 
 def _require_supported(args: argparse.Namespace, signature: Signature) -> None:
-    """Raise UsageError for what only groups without fixed points, or only infinite groups, have."""
-    if args.systole:
-        raise UsageError(
-            f"--systole is for closed surfaces; write the surface as a gluing word, such as abABcdCD, instead of the "
-            f"symbol '{args.word}'"
-        )
-    for name in ("spectrum", "draw"):
+    """Raise UsageError for what only infinite groups have."""
+    for name in ("spectrum", "systole", "function"):
         if signature.order and getattr(args, name):
             raise UsageError(f"--{name} is for infinite groups; '{signature}' has {signature.order} elements")
 

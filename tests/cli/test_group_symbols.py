@@ -49,13 +49,28 @@ def test_an_orbifold_is_drawn(orbiframe, tmp_path, symbol):
     assert picture.read_text().startswith("<")
 
 
+def test_a_finite_group_is_drawn_on_the_sphere(orbiframe, tmp_path):
+    ran = orbiframe("group", "*532", "--draw", tmp_path / "ball.svg")
+    assert (ran.status, ran.err) == (0, "")
+
+
+def test_the_systole_of_a_rotation_group_is_twice_the_glide_of_its_mirrors(orbiframe):
+    """The shortest translation of (2, 3, 7) has the trace 1 + 2 cos(2 pi / 7), a quarter of Klein's quartic."""
+    lengths = []
+    for symbol in ("*237", "237"):
+        ran = orbiframe("group", symbol, "--systole", "--json")
+        assert (ran.status, ran.err) == (0, "")
+        lengths.append(json.loads(ran.out)["systole"]["length"])
+    assert lengths[1] == pytest.approx(2 * lengths[0], rel=1e-9)
+    assert 2 * np.cosh(lengths[1] / 2) == pytest.approx(1 + 2 * np.cos(2 * np.pi / 7), rel=1e-9)
+
+
 @pytest.mark.parametrize(
     ("arguments", "problem"),
     [
         (["23"], "bad orbifold"),
         (["*203"], "order 0"),
-        (["*237", "--systole"], "--systole is for closed surfaces"),
-        (["*532", "--draw", "ball.svg"], "*532' has 120 elements"),
+        (["*532", "--systole"], "*532' has 120 elements"),
         (["532", "--spectrum", "3"], "for infinite groups"),
         (["bolzas"], "Did you mean 'bolza'"),
     ],
