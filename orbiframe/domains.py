@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from orbiframe.errors import FitError
 from orbiframe.geodesic_triangulation import GeodesicTriangulation
 from orbiframe.orbifold import Orbifold
@@ -18,7 +20,9 @@ def domain_for(
     """The domain for about `size` functions, so many for each vertex, edge and triangle as `unknowns` says.
 
     A geodesic triangulation is taken as it is. From the map of a mesh a domain is made with V vertices, where V
-    follows from E = 3 (V - chi) and F = 2 (V - chi). Raises FitError for a triangulation of another orbifold.
+    follows from E = 3 (V - chi) and F = 2 (V - chi). In S^2 and H^2 there are enough of them, and more functions if
+    need be, for triangles of area 1 on average: larger ones lose digits, and are as large as a half sphere or as the
+    largest triangle of H^2 soon. Raises FitError for a triangulation of another orbifold.
     """
     if triangulation.orbifold is not orbifold:
         raise FitError("the triangulation belongs to another orbifold than the functions; pass triangulation.orbifold")
@@ -27,4 +31,11 @@ def domain_for(
     at_vertex, on_edge, in_face = unknowns
     per_vertex = at_vertex + 3 * on_edge + 2 * in_face
     fixed = orbifold.euler_characteristic * (3 * on_edge + 2 * in_face)
-    return spline_domain(triangulation, max(round((size + fixed) / per_vertex), 1))
+    return spline_domain(triangulation, max(round((size + fixed) / per_vertex), fewest_vertices(orbifold)))
+
+
+def fewest_vertices(orbifold: Orbifold) -> int:
+    """Of a domain whose triangles have an average area of at most 1 in S^2 and H^2; one in E^2."""
+    if orbifold.geometry.curvature == 0:
+        return 1
+    return math.ceil(orbifold.area / 2 + orbifold.euler_characteristic)

@@ -1,0 +1,34 @@
+"""Every basis keeps its laws on the datasets: here on two of them each, on all by benchmarks/laws.py."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from dataset_laws import FAMILIES, REGISTRY, SURFACES, exists, mapped, verdicts
+
+from orbiframe.errors import GeometryError
+
+QUICK = [(f, SURFACES[(i + step) % len(SURFACES)]) for i, f in enumerate(FAMILIES) for step in (0, 3)]
+# Polynomials on as few triangles as five handles can have take long to build.
+SLOW = {(family, "plate_genus5") for family in ("argyris", "bernstein", "hybrid", "ps5", "ps6", "zenisek")}
+
+
+@pytest.mark.parametrize(("family", "surface"), [pair for pair in QUICK if exists(*pair) and pair not in SLOW])
+def test_a_basis_keeps_its_laws(family: str, surface: str, tmp_path: Path) -> None:
+    broken = [f"{v.law}: {v.error}" for v in verdicts(family, surface, tmp_path) if v.error is not None]
+    assert broken == []
+
+
+def test_products_of_b_splines_exist_on_a_torus_or_klein_bottle_only() -> None:
+    triangulation = mapped("three_crosscaps")
+    with pytest.raises(GeometryError, match="torus or Klein bottle"):
+        REGISTRY.load("basis", "tensor-bspline")(triangulation.orbifold, triangulation, size=60)
+
+
+@pytest.mark.parametrize("surface", ["sphere", "projective_plane", "torus", "klein_bottle", "three_crosscaps"])
+@pytest.mark.parametrize("family", ["ps2", "dms", "simplex", "argyris"])
+def test_the_smallest_basis_that_a_surface_can_have(family: str, surface: str) -> None:
+    triangulation = mapped(surface)
+    basis = REGISTRY.load("basis", family)(triangulation.orbifold, triangulation, size=1)
+    assert basis.domain.vertex_count <= max(1, round(triangulation.orbifold.area))
