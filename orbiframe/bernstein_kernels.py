@@ -71,19 +71,21 @@ def micro_cell(inverse, f, x0, x1, x2):  # type: ignore[no-untyped-def]
 @njit(cache=True, error_model="numpy")
 def fan_cell(fan, f, a, b, c):  # type: ignore[no-untyped-def]
     """The micro triangle of a fan at coordinates in the whole triangle: edge e, or 2 e and 2 e + 1 beside its R."""
+    # Written as choices of numbers, not of ways: a processor cannot foretell in which micro triangle the next point is.
     r0, r1, r2 = a * fan[f, 0], b * fan[f, 1], c * fan[f, 2]
-    if r2 <= r0 and r2 <= r1:
-        edge, start, end, height = 0, a - r2 / fan[f, 0], b - r2 / fan[f, 1], r2
-    elif r0 <= r1:
-        edge, start, end, height = 1, b - r0 / fan[f, 1], c - r0 / fan[f, 2], r0
-    else:
-        edge, start, end, height = 2, c - r1 / fan[f, 2], a - r1 / fan[f, 0], r1
+    second = r0 <= r1
+    edge, start, end, height = (1 if second else 2), (b if second else c), (c if second else a), min(r0, r1)
+    first = r2 <= height
+    edge, start, end, height = (0 if first else edge), (a if first else start), (b if first else end), min(r2, height)
+    start -= height / fan[f, edge]
+    end -= height / fan[f, (edge + 1 if edge < 2 else 0)]
     if fan.shape[1] == 3:
         return edge, start, end, height
     mu, nu = fan[f, 3 + 2 * edge], fan[f, 4 + 2 * edge]
-    if start * nu >= end * mu:
-        return 2 * edge, start - end / nu * mu, end / nu, height
-    return 2 * edge + 1, end - start / mu * nu, start / mu, height
+    early = start * nu >= end * mu
+    own, other = (start if early else end), (end if early else start)
+    ahead = other / (nu if early else mu)
+    return 2 * edge + (0 if early else 1), own - ahead * (mu if early else nu), ahead, height
 
 
 @njit(cache=True, error_model="numpy")
