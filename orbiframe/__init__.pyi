@@ -61,6 +61,7 @@ from orbiframe.exact_patches import (
     TrianglePatches as TrianglePatches,
     patches_of as patches_of,
 )
+from orbiframe.exact_relations import prove_relations as prove_relations
 from orbiframe.fitter import Fitter as Fitter
 from orbiframe.flat_lattice import FlatLattice as FlatLattice
 from orbiframe.geodesic_triangulation import GeodesicTriangulation as GeodesicTriangulation

@@ -30,6 +30,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("word", metavar="WORD", help=_WORD_HELP)
     add("--polygon", metavar="NAME", default="regular", help="regular (the default), or the name of a group")
+    add("--prove", action="store_true", help="prove the relations of the regular polygon exactly, without rounding")
     add("--systole", action="store_true", help="the shortest closed geodesic, and how many there are")
     add("--spectrum", metavar="N", type=int, help="the N smallest eigenvalues of the Laplacian, with multiplicities")
     add("--draw", metavar="FILE", type=Path, help="a picture of the polygon and its tiles, .svg, .png or .pdf")
@@ -55,6 +56,8 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     else:
         word = word_named(args.word)
         found = _described(word)
+        if args.prove:
+            found["proof"] = _proof(word, args.polygon)
         if args.systole or args.spectrum or args.draw:
             found.update(_computed(args, _group(word, args.polygon, registry), registry))
     print(json.dumps(found) if args.json else "\n".join(_lines(found)))
@@ -72,6 +75,18 @@ def _require_picture(args: argparse.Namespace) -> None:
     for name in ("model", "tiles", "radius", "function"):
         if getattr(args, name) is not None:
             raise UsageError(f"--{name} belongs to a picture; name its file with --draw, such as --draw tiles.svg")
+
+
+def _proof(word: Word, polygon: str) -> dict[str, Any]:
+    """What is proved of the relations, and in which ring."""
+    from orbiframe.exact_relations import prove_relations
+
+    if polygon != "regular":
+        raise UsageError(
+            f"--prove is for the regular polygon, whose entries are algebraic; leave out --polygon {polygon}"
+        )
+    count = len(prove_relations(word))
+    return {"relations": count, "ring": f"Z[zeta, t], zeta of order {4 * len(word)}"}
 
 
 def _group(word: Word, polygon: str, registry: Registry) -> Group:
@@ -175,6 +190,8 @@ def _word_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
         ("relations", ", ".join(f"{relation} = 1" for relation in found["relations"])),
         ("homology", found["homology"]),
     ]
+    if proof := found.get("proof"):
+        rows.append(("proof", f"exact, in {proof['ring']}"))
     if standard := found.get("standard"):
         rows += [("standard", standard["word"]), ("", f"with {_equations(standard['letters'])}")]
         rows += [("", f"and {_equations(standard['given'])}")]

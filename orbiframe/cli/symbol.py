@@ -70,7 +70,9 @@ def symbol_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
 
 
 def _require_supported(args: argparse.Namespace, signature: Signature) -> None:
-    """Raise UsageError for what only infinite groups have."""
+    """Raise UsageError for what only gluing words, or only infinite groups, have."""
+    if args.prove:
+        raise UsageError(f"--prove is for gluing words, such as abABcdCD, and '{signature}' is a symbol; leave it out")
     for name in ("spectrum", "systole", "function"):
         if signature.order and getattr(args, name):
             raise UsageError(f"--{name} is for infinite groups; '{signature}' has {signature.order} elements")

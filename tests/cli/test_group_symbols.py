@@ -49,6 +49,12 @@ def test_an_orbifold_is_drawn(orbiframe, tmp_path, symbol):
     assert picture.read_text().startswith("<")
 
 
+def test_relations_are_proved(orbiframe):
+    ran = orbiframe("group", "abABcdCD", "--prove")
+    assert (ran.status, ran.err) == (0, "")
+    assert "proof     exact, in Z[zeta, t], zeta of order 32" in ran.out
+
+
 def test_a_finite_group_is_drawn_on_the_sphere(orbiframe, tmp_path):
     ran = orbiframe("group", "*532", "--draw", tmp_path / "ball.svg")
     assert (ran.status, ran.err) == (0, "")
@@ -70,6 +76,8 @@ def test_the_systole_of_a_rotation_group_is_twice_the_glide_of_its_mirrors(orbif
     [
         (["23"], "bad orbifold"),
         (["*203"], "order 0"),
+        (["*237", "--prove"], "gluing words"),
+        (["abAB", "--prove"], "hyperbolic"),
         (["*532", "--systole"], "*532' has 120 elements"),
         (["532", "--spectrum", "3"], "for infinite groups"),
         (["bolzas"], "Did you mean 'bolza'"),
