@@ -59,8 +59,8 @@ def exists(family: str, surface: str) -> bool:
     return family != "tensor-bspline" or surface in ("torus", "klein_bottle")
 
 
-def verdicts(family: str, surface: str, folder: Path) -> list[Verdict]:
-    """What every law says of a basis on a surface."""
-    component = partial(REGISTRY.load("basis", family), size=SIZE)
-    labs = (OneSurface(folder, {"size": SIZE}, surface_name=surface) for _ in laws_of("basis").laws)
-    return [tried(law, component, lab) for law, lab in zip(laws_of("basis").laws, labs, strict=True)]
+def verdicts(family: str, surface: str, folder: Path, **options: object) -> list[Verdict]:
+    """What every law says of a basis with some options on a surface."""
+    params = {"size": SIZE, **options}
+    component = partial(REGISTRY.load("basis", family), **params)
+    return [tried(law, component, OneSurface(folder, params, surface_name=surface)) for law in laws_of("basis").laws]

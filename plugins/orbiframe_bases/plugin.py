@@ -52,7 +52,7 @@ def orbiframe_components() -> list[Component]:
             "basis",
             "simplex",
             "orbiframe_bases.simplex:Simplex",
-            "B-splines of the vertices of a triangulation: C1 quadratics and C2 cubics, not negative, few functions",
+            "B-splines of the vertices of a triangulation: C1 quadratics, C2 cubics, not negative, few functions",
         ),
         Component(
             "basis",

@@ -8,6 +8,7 @@ import pytest
 from dataset_laws import FAMILIES, REGISTRY, SURFACES, exists, mapped, verdicts
 
 from orbiframe.errors import GeometryError
+from orbiframe.testing.kit import Verdict
 
 QUICK = [(f, SURFACES[(i + step) % len(SURFACES)]) for i, f in enumerate(FAMILIES) for step in (0, 3)]
 # Polynomials on as few triangles as five handles can have take long to build.
@@ -16,8 +17,19 @@ SLOW = {(family, "plate_genus5") for family in ("argyris", "bernstein", "hybrid"
 
 @pytest.mark.parametrize(("family", "surface"), [pair for pair in QUICK if exists(*pair) and pair not in SLOW])
 def test_a_basis_keeps_its_laws(family: str, surface: str, tmp_path: Path) -> None:
-    broken = [f"{v.law}: {v.error}" for v in verdicts(family, surface, tmp_path) if v.error is not None]
-    assert broken == []
+    assert broken(verdicts(family, surface, tmp_path)) == []
+
+
+@pytest.mark.parametrize("surface", ["klein_bottle", "plate_genus2"])
+@pytest.mark.parametrize(
+    ("family", "degree"), [("bernstein", 1), ("dms", 1), ("dms", 4), ("simplex", 1), ("simplex", 3)]
+)
+def test_a_basis_of_another_degree_keeps_its_laws(family: str, degree: int, surface: str, tmp_path: Path) -> None:
+    assert broken(verdicts(family, surface, tmp_path, degree=degree)) == []
+
+
+def broken(found: list[Verdict]) -> list[str]:
+    return [f"{verdict.law}: {verdict.error}" for verdict in found if verdict.error is not None]
 
 
 def test_products_of_b_splines_exist_on_a_torus_or_klein_bottle_only() -> None:
