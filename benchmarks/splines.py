@@ -60,6 +60,8 @@ FAMILIES: dict[str, tuple[str, dict[str, Any]]] = {
     "gaussian, width 1.7": ("gaussian", {"width": 1.7}),
 }
 SIZES = (250, 1000, 4000)
+PICTURED = ["bernstein, degree 2", "bernstein, degree 4", "ps2", "ps4", "ps6", "clough-tocher", "argyris, degree 6"]
+PICTURED += ["zenisek", "dms", "tensor-bspline", "gaussian", "gaussian, width 1.7"]
 
 
 class Problem(NamedTuple):
@@ -122,7 +124,7 @@ def projected(basis: Basis, task: Problem) -> Outcome:
 
 def _condition(scaled: csc_array) -> float:
     values = np.linalg.eigvalsh(scaled.toarray())
-    return float(values[-1] / max(values[0], np.finfo(float).tiny))
+    return float(values[-1] / values[0]) if values[0] > 0 else np.inf
 
 
 def constants(basis: Basis, task: Problem) -> float:
@@ -179,17 +181,24 @@ def draw(rows: list[tuple[str, str, list[Outcome], float]], path: Path) -> None:
     import matplotlib.pyplot as plt
 
     surfaces = list(dict.fromkeys(surface for _, surface, _, _ in rows))
-    figure, axes = plt.subplots(1, len(surfaces), figsize=(4.2 * len(surfaces), 4.6), sharey=True, squeeze=False)
-    for axis, surface in zip(axes[0], surfaces, strict=True):
-        for k, (title, _, found, _) in enumerate(row for row in rows if row[1] == surface):
+    figure, axes = plt.subplots(1, len(surfaces), figsize=(3.6 * len(surfaces) + 1.6, 4.6), sharey=True, squeeze=False)
+    for title, surface, found, _ in rows:
+        if title in PICTURED:
+            k, axis = PICTURED.index(title), axes[0][surfaces.index(surface)]
             sizes, errors = [o.basis.size for o in found], [o.error for o in found]
-            axis.loglog(sizes, errors, marker="os^vD*"[k % 6], color=plt.cm.tab20(k % 20), lw=1, ms=4, label=title)
-        axis.set(title=surface, xlabel="functions")
-        axis.grid(visible=True, which="both", lw=0.3)
+            axis.loglog(sizes, errors, marker="os^vD*"[k % 6], color=plt.cm.tab20(k), lw=1.2, ms=5, label=title)
+    for axis, surface in zip(axes[0], surfaces, strict=True):
+        axis.set(title=surface, xlabel="functions", ylim=(1e-10, 0.1))
+        axis.set_xticks(SIZES, [str(size) for size in SIZES])
+        axis.minorticks_off()
+        axis.grid(visible=True, lw=0.3)
     axes[0][0].set_ylabel("relative error")
-    axes[0][-1].legend(fontsize=6, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    handles = {label: h for axis in axes[0] for h, label in zip(*axis.get_legend_handles_labels(), strict=True)}
+    axes[0][-1].legend(
+        handles.values(), handles.keys(), fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False
+    )
     figure.tight_layout()
-    figure.savefig(path, dpi=80)
+    figure.savefig(path, dpi=70)
 
 
 def main() -> None:

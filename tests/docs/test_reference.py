@@ -65,6 +65,17 @@ def _defaults(kind: str, name: str, registry: Registry) -> dict[str, str]:
     return {o.name: str(o.default) for name in chosen for o in options_of(registry.load(kind, name))}
 
 
+def test_every_option_of_every_basis_is_in_its_table(registry):
+    rows = table_rows(section(REFERENCE / "config.md", "Options of the bases"))
+    declared = [
+        (component.name, option.name, str(option.default))
+        for component in registry.components("basis")
+        for option in options_of(registry.load("basis", component.name))
+        if option.name != "size"
+    ]
+    assert sorted(tuple(map(unquoted, row[:3])) for row in rows) == sorted(declared)
+
+
 @pytest.mark.parametrize("name", sorted(set(pipeline.PARAMETRIZER.values())))
 def test_every_choice_of_weights_is_named(name, registry):
     weights = next(o for o in options_of(registry.load("parametrizer", name)) if o.name == "weights")
