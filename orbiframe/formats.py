@@ -79,6 +79,7 @@ def write(
     """
     path = Path(path)
     require_sound(polyhedron, path)
+    require_writable(_behind_links(path))
     _write_whole(path, _component(path, registry, "writer", format, options), polyhedron)
 
 
@@ -88,7 +89,9 @@ def export(path: Path, surface: OrbifoldSurface, registry: Components) -> None:
     The file appears whole or not at all, as in `write`. Raises FormatError where the place is unfit or the exporter
     fails, FitError for a surface that has no exact patches.
     """
-    _write_whole(Path(path), _component(Path(path), registry, "exporter", None, None), surface)
+    path = Path(path)
+    require_writable(_behind_links(path))
+    _write_whole(path, _component(path, registry, "exporter", None, None), surface)
 
 
 def exports(path: Path, registry: Components) -> bool:
@@ -191,13 +194,16 @@ def _guarded(path: Path, doing: str, component: Callable[..., object], *argument
 
 def _write_whole(path: Path, writer: Callable[..., object], content: object) -> None:
     """Have a file made in a folder beside its place and then moved there."""
-    # Through a link the file behind it is written, as by any other program.
-    target = Path(os.path.realpath(path)) if path.is_symlink() else path
-    require_writable(target)
+    target = _behind_links(path)
     with _folder_beside(target) as folder:
         made = Path(folder) / path.name
         _guarded(path, "writing", writer, made, content)
         _move(made, target)
+
+
+def _behind_links(path: Path) -> Path:
+    """Through a link the file behind it is written, as by any other program."""
+    return Path(os.path.realpath(path)) if path.is_symlink() else path
 
 
 def _described(error: BaseException) -> str:

@@ -98,8 +98,9 @@ def test_a_reader_of_the_output_may_leave():
 
 def test_an_interrupt_ends_with_one_line(tmp_path):
     code = """
-import sys, time
+import signal, sys, time
 from orbiframe.cli import info, main
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where the tests run in the background
 def run(args, registry):
     print("at work", flush=True)
     time.sleep(60)

@@ -55,7 +55,7 @@ def test_edges_are_short_and_the_surface_is_the_same(mesh: Polyhedron, part: flo
 def test_cells_with_common_edges_become_a_simplicial_complex(name: str, seed: int, steps: int, part: float) -> None:
     """Loops, edges with the same ends, faces that meet themselves: afterwards three vertices have at most one face."""
     coarse = wandering(WORDS[name], seed, steps).polyhedron()
-    forest = bisected(coarse, part * coarse.edge_lengths.max(), True)
+    forest = bisected(coarse, part * coarse.edge_lengths.max() or np.inf, True)
     fine = forest.polyhedron
     assert surface_type(fine) == surface_type(coarse)
     assert not doubled_edges(fine).any()
