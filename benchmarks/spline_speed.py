@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 
 _COUNT = 200_000
 _VERTICES = 2000
-_ROUNDS = 5
+_ROUNDS, _RUNS = 4, 3
 _AGAIN = 16_000
 FAMILIES: list[tuple[str, dict[str, Any], int]] = [
     ("ps2", {}, 3),
@@ -51,13 +51,14 @@ def show_speed(registry: Registry, made: Triangulation) -> None:
 
 def least(works: list[Callable[[], object]]) -> list[float]:
     """The least processor time of each of several works, seconds; they take turns, so that all see the same load."""
-    times = np.full((_ROUNDS, len(works)), np.inf)
-    for k in range(_ROUNDS):
+    times = np.full(len(works), np.inf)
+    for _ in range(_ROUNDS):
         for n, work in enumerate(works):
-            start = time.process_time()
-            work()
-            times[k, n] = time.process_time() - start
-    return list(times.min(axis=0))
+            for _ in range(_RUNS):
+                start = time.process_time()
+                work()
+                times[n] = min(times[n], time.process_time() - start)
+    return list(times)
 
 
 def peers() -> tuple[Callable[[], object], Callable[[], object], Callable[[], object]]:

@@ -16,12 +16,11 @@ _bare = njit(cache=True, error_model="numpy", _nrt=False)  # type: ignore[call-o
 def spline_values(points, grid, steps, split, nets, form, work, values):  # type: ignore[no-untyped-def]
     """Values of functions with given Bernstein coefficients; returns the first point without a triangle, or -1.
 
-    points: patches (n,) and x (n, 3); grid and steps: see
-    `Locator`; split: inverses and fans of the micro triangles, see `fan_cell`; nets: (F m, n_d, q); form: the degree,
-    multinomials (n_d,) and whether the last function is W, by which the others are divided; work: room for the micro
-    triangles (b,) and coordinates (b, 3) of a block, for n_d factors and for powers (3, d + 1); values: (n, q), or
-    (n, q - 1) with W. To locate is full of branches that cannot be foretold, to evaluate has none: apart from one
-    another, many of the slow reads of coefficients are under way at a time.
+    points: patches (n,) and x (n, 3); grid and steps: see `Locator`; split: inverses and fans of the micro triangles,
+    see `fan_cell`; nets: (F m, n_d, q); form: the degree, multinomials (n_d,) and whether the last function is W, by
+    which the others are divided; work: room for the micro triangles (b,) and coordinates (b, 3) of a block, for n_d
+    factors and for powers (3, d + 1); values: (n, q), or (n, q - 1) with W. Each step is a loop of its own over a
+    block: while one point waits for memory, or for a branch that could not be foretold, the next ones are under way.
     """
     room = len(work[0])
     for begin in range(0, len(values), room):
@@ -43,25 +42,33 @@ def _locate(begin, end, points, grid, steps, split, work):  # type: ignore[no-un
     micro, coordinates = work[0], work[1]
     sides, cells = grid_face.shape[1], grid_face.shape[2]
     for n in range(begin, end):
-        k = n - begin
-        p, x0, x1, x2 = patch[n], x[n, 0], x[n, 1], x[n, 2]
+        p, x0, x1, x2, k = patch[n], x[n, 0], x[n, 1], x[n, 2], n - begin
         if not abs(x0) + abs(x1) + abs(x2) < np.inf:
             return n
         i, j = cell_of(x0, x1, x2, half_width[p], cells)
         s = 1 if sides > 1 and x0 < 0 else 0
-        y0 = g[p, s, i, j, 0, 0] * x0 + g[p, s, i, j, 0, 1] * x1 + g[p, s, i, j, 0, 2] * x2
-        y1 = g[p, s, i, j, 1, 0] * x0 + g[p, s, i, j, 1, 1] * x1 + g[p, s, i, j, 1, 2] * x2
-        y2 = g[p, s, i, j, 2, 0] * x0 + g[p, s, i, j, 2, 1] * x1 + g[p, s, i, j, 2, 2] * x2
-        f, y0, y1, y2, a, b, c = walk(grid_face[p, s, i, j], y0, y1, y2, inverse, twin, across)
+        micro[k] = grid_face[p, s, i, j]
+        for row in range(3):
+            y = g[p, s, i, j, row, 0] * x0 + g[p, s, i, j, row, 1] * x1 + g[p, s, i, j, row, 2] * x2
+            coordinates[k, row] = y
+    for k in range(end - begin):
+        y0, y1, y2 = coordinates[k, 0], coordinates[k, 1], coordinates[k, 2]
+        f, y0, y1, y2, a, b, c = walk(micro[k], y0, y1, y2, inverse, twin, across)
         if f < 0:
-            return n
-        if fan.shape[1] > 0:
-            m, a, b, c = fan_cell(fan, f, a, b, c)
-        else:
+            return begin + k
+        if fan.shape[1] == 0:
             m = micro_cell(cell_inverse, f, y0, y1, y2)
             a, b, c = micro_heights(cell_inverse, f, m, y0, y1, y2)
-        micro[k] = f * micro_count + m
+            micro[k] = f * micro_count + m
+        else:
+            micro[k] = f
         coordinates[k, 0], coordinates[k, 1], coordinates[k, 2] = a, b, c
+    if fan.shape[1] > 0:
+        for k in range(end - begin):
+            f = micro[k]
+            m, a, b, c = fan_cell(fan, f, coordinates[k, 0], coordinates[k, 1], coordinates[k, 2])
+            micro[k] = f * micro_count + m
+            coordinates[k, 0], coordinates[k, 1], coordinates[k, 2] = a, b, c
     return -1
 
 
