@@ -20,9 +20,8 @@ def domain_for(
     """The domain for about `size` functions, so many for each vertex, edge and triangle as `unknowns` says.
 
     A geodesic triangulation is taken as it is. From the map of a mesh a domain is made with V vertices, where V
-    follows from E = 3 (V - chi) and F = 2 (V - chi). In S^2 and H^2 there are enough of them, and more functions if
-    need be, for triangles of area 1 on average: larger ones lose digits, and are as large as a half sphere or as the
-    largest triangle of H^2 soon. Raises FitError for a triangulation of another orbifold.
+    follows from E = 3 (V - chi) and F = 2 (V - chi); in S^2 and H^2 with more vertices, hence functions, if need be,
+    see `fewest_vertices`. Raises FitError for a triangulation of another orbifold.
     """
     if triangulation.orbifold is not orbifold:
         raise FitError("the triangulation belongs to another orbifold than the functions; pass triangulation.orbifold")
@@ -35,7 +34,10 @@ def domain_for(
 
 
 def fewest_vertices(orbifold: Orbifold) -> int:
-    """Of a domain whose triangles have an average area of at most 1 in S^2 and H^2; one in E^2."""
-    if orbifold.geometry.curvature == 0:
-        return 1
-    return math.ceil(orbifold.area / 2 + orbifold.euler_characteristic)
+    """Of a domain whose triangles are on average as large as those of the icosahedron on S^2, pi / 5; one in E^2.
+
+    Much larger triangles would fill half a sphere, or lose digits and take long to find in H^2, where none has an area
+    of pi.
+    """
+    chi = orbifold.euler_characteristic
+    return max(math.ceil(chi + 5 * abs(chi)), 1)
