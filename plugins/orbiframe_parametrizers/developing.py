@@ -123,7 +123,7 @@ def edge_isometries(mesh: Polyhedron, geometry: Geometry, lengths: Floats, angle
 
 
 def on_both_halfedges(mesh: Polyhedron, geometry: Geometry, edges: Ints, along: Floats) -> Floats:
-    """Isometries (H, 3, 3) from those along one halfedge of every edge; a twin that runs the other way has the inverse."""
+    """Isometries (H, 3, 3) from those along one halfedge of every edge; a twin the other way has the inverse."""
     steps = np.empty((len(mesh.tail), 3, 3))
     steps[mesh.twin[edges]] = np.where(mesh.same[edges, None, None], along, geometry.inverse(along))
     steps[edges] = along
