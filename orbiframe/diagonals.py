@@ -93,8 +93,8 @@ def _flattened(points: Floats, normal: Floats) -> Floats:
     """The corners of a face in coordinates of the plane across its normal, (n, 2), counterclockwise."""
     size = float(np.linalg.norm(normal))
     n = normal / size if size > 0 else np.array([0.0, 0.0, 1.0])
-    helper = np.eye(3)[np.argmin(np.abs(n))]
-    u = np.cross(helper, n)
+    axis = np.eye(3)[np.argmin(np.abs(n))]
+    u = np.cross(axis, n)
     u /= np.linalg.norm(u)
     centred = points - points.mean(axis=0)
     return np.stack([centred @ u, centred @ np.cross(n, u)], axis=1)

@@ -39,5 +39,5 @@ def fewest_vertices(orbifold: Orbifold) -> int:
     Much larger triangles would fill half a sphere, or lose digits and take long to find in H^2, where none has an area
     of pi.
     """
-    chi = orbifold.euler_characteristic
+    chi = float(orbifold.euler_characteristic)
     return max(math.ceil(chi + 5 * abs(chi)), 1)

@@ -131,7 +131,7 @@ class GeodesicTriangulation:
         beside, first = beside[new], first[new]
         frame[beside] = self.geometry.inverse(self.gluing[across[first]]) @ frame[source[first]]
         known[beside] = True
-        return beside
+        return np.asarray(beside)
 
     @cached_property
     def _end(self) -> Ints:
