@@ -21,8 +21,9 @@ from typing import Any
 
 import numpy as np
 
-from orbiframe import Polyhedron, formats
-from orbiframe.registry import Registry
+from orbiframe import Polyhedron
+from orbiframe.files import gate as formats
+from orbiframe.components.registry import Registry
 
 REGISTRY = Registry.discover()
 FORMATS = {

@@ -19,14 +19,15 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 import hard_surfaces as hard
 from signed_faces import WORDS, fan, wandering
 
-from orbiframe import Polyhedron, Triangulation, pipeline
-from orbiframe.bisection import bisected, edge_length_for
-from orbiframe.crowding import crowding_of
-from orbiframe.diagonals import triangulated
+from orbiframe import Polyhedron, Triangulation
+from orbiframe.fitting import pipeline
+from orbiframe.meshes.bisection import bisected, edge_length_for
+from orbiframe.triangulations.lost_digits import crowding_of
+from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.errors import OrbiframeError
-from orbiframe.refinement import refine
-from orbiframe.registry import Registry
-from orbiframe.topology import surface_type
+from orbiframe.meshes.subdivision import refine
+from orbiframe.components.registry import Registry
+from orbiframe.meshes.surface_type import surface_type
 
 REGISTRY = Registry.discover()
 GENERA = (*range(21), 50, 100, 133)

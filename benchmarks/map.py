@@ -41,7 +41,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import splu
 
 from orbiframe import MarkedGroup, Marking, Polyhedron, Triangulation, surface_type
-from orbiframe.diagonals import triangulated
+from orbiframe.meshes.face_diagonals import triangulated
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "datasets"))
 import make

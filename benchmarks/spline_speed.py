@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CloughTocher2DInterpolator, NdBSpline
 
 from orbiframe import GeodesicTriangulation, Points, Registry, Triangulation, domain_for
-from orbiframe.orbit_sum import reaching_pairs
+from orbiframe.functions.orbit_sum import reaching_pairs
 
 Floats = NDArray[np.float64]
 

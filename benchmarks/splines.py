@@ -26,12 +26,12 @@ from spline_claims import show_claims
 from spline_speed import show_speed
 
 from orbiframe import Basis, Points, Registry, Triangulation, triangle_points
-from orbiframe.diagonals import triangulated
+from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.errors import OrbiframeError
-from orbiframe.formats import read
-from orbiframe.orbit_sum import reaching_pairs
-from orbiframe.refinement import refine
-from orbiframe.topology import oriented
+from orbiframe.files.gate import read
+from orbiframe.functions.orbit_sum import reaching_pairs
+from orbiframe.meshes.subdivision import refine
+from orbiframe.meshes.surface_type import oriented
 
 Floats = NDArray[np.float64]
 

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from pathlib import Path
 
-from orbiframe import Triangulation, formats
-from orbiframe.diagonals import triangulated
-from orbiframe.pipeline import GEOMETRY, PARAMETRIZER
-from orbiframe.registry import Registry
+from orbiframe import Triangulation
+from orbiframe.files import gate as formats
+from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe.fitting.pipeline import GEOMETRY, PARAMETRIZER
+from orbiframe.components.registry import Registry
 from orbiframe.testing.kit import Verdict, laws_of, tried
 from orbiframe.testing.lab import Lab
-from orbiframe.topology import oriented, require_closed_surface
+from orbiframe.meshes.surface_type import oriented, require_closed_surface
 
 FOLDER = Path(__file__).parents[1] / "datasets"
 REGISTRY = Registry.discover()

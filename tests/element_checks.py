@@ -21,8 +21,8 @@ from orbiframe import (
     regular_polygon,
     symmetric_power,
 )
-from orbiframe.galerkin import mass, stiffness
-from orbiframe.word import Word
+from orbiframe.splines.galerkin import mass, stiffness
+from orbiframe.words.word import Word
 
 # The first eigenvalue of the Bolza surface (Strohmaier and Uski, 2013).
 BOLZA = 3.8388872588421995

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from orbiframe import pipeline
-from orbiframe.config import Config
-from orbiframe.pipeline import Result
-from orbiframe.polyhedron import Polyhedron
-from orbiframe.registry import Registry
+from orbiframe.fitting import pipeline
+from orbiframe.fitting.config import Config
+from orbiframe.fitting.pipeline import Result
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.components.registry import Registry
 from orbiframe.testing.polyhedra import reference_polyhedra
 
 DATASETS = Path(__file__).parents[1] / "datasets"
@@ -55,7 +55,7 @@ def round_torus(big: float = 3.0, small: float = 1.0) -> Polyhedron:
 
 def round_sphere(radius: float = 2.0) -> Polyhedron:
     """An octahedron cut fine and projected to a sphere."""
-    from orbiframe.refinement import refine
+    from orbiframe.meshes.subdivision import refine
 
     corners = np.concatenate([np.eye(3), -np.eye(3)])
     faces = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]]

@@ -6,9 +6,9 @@ from itertools import product
 
 import numpy as np
 
-from orbiframe.diagonals import triangulated
-from orbiframe.polyhedron import Polyhedron
-from orbiframe.refinement import refine
+from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.subdivision import refine
 
 Cell = tuple[int, int, int]
 

@@ -14,8 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from orbiframe import FormatError, PluginError, Polyhedron, formats
-from orbiframe.registry import Registry
+from orbiframe import FormatError, PluginError, Polyhedron
+from orbiframe.files import gate as formats
+from orbiframe.components.registry import Registry
 
 TABLES = ("normals", "colors", "face_colors")
 HEADING = ("suffix", "read and written by", "triangles", "quads", "n-gons", "normals", "colours of vertices",

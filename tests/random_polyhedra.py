@@ -7,8 +7,8 @@ from itertools import combinations
 import numpy as np
 from hypothesis import strategies as st
 
-from orbiframe.diagonals import triangulated
-from orbiframe.polyhedron import Polyhedron
+from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.testing.polyhedra import reference_polyhedra
 
 NAMES = sorted(reference_polyhedra())

@@ -12,11 +12,11 @@ from orbiframe_geometries.h2 import H2
 from orbiframe_geometries.s2 import S2
 from scipy.spatial import cKDTree
 
-from orbiframe.atlas import Atlas, Points
-from orbiframe.geometry import Geometry
-from orbiframe.orbifold import Orbifold
-from orbiframe.polyhedron import Polyhedron
-from orbiframe.triangulation import Triangulation
+from orbiframe.orbifolds.atlas import Atlas, Points
+from orbiframe.planes.geometry import Geometry
+from orbiframe.orbifolds.orbifold import Orbifold
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.triangulations.triangulation import Triangulation
 
 OCTAGON_RADIUS = float(np.arccosh(1 / np.tan(np.pi / 8) ** 2))
 OCTAGON_STEP = 2 * float(np.arccosh(1 / np.tan(np.pi / 8)))

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from orbiframe.polyhedron import Polyhedron
+from orbiframe.meshes.polyhedron import Polyhedron
 
 # One word for the surface of every kind: a letter is an edge, a capital one runs backwards.
 WORDS = {

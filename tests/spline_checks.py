@@ -21,7 +21,7 @@ from orbiframe import (
     regular_polygon,
     triangle_rule,
 )
-from orbiframe.word import Word
+from orbiframe.words.word import Word
 
 # Where edges are looked at, as shares of their length; and a step across them, as a share of the triangle.
 _SHARES = (0.137, 0.5, 0.841)

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import Registry
-from orbiframe.drawing.colours import GREY, INK, line_colour, tint
-from orbiframe.drawing.file import save_picture
-from orbiframe.drawing.models import Solid
-from orbiframe.drawing.picture import Curve, Item, Label, Picture, Shape, circle, polyline
+from orbiframe_drawing.colours import GREY, INK, line_colour, tint
+from orbiframe_drawing.file import save_picture
+from orbiframe_drawing.models import Solid
+from orbiframe_drawing.picture import Curve, Item, Label, Picture, Shape, circle, polyline
 
 Floats = NDArray[np.float64]
 

@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import Registry
-from orbiframe.drawing.colours import GREY, INK, line_colour, tint
-from orbiframe.drawing.file import save_picture
-from orbiframe.drawing.models import Chart
-from orbiframe.drawing.page import Page
-from orbiframe.drawing.picture import Curve, Item, Label, Picture, Shape, circle
+from orbiframe_drawing.colours import GREY, INK, line_colour, tint
+from orbiframe_drawing.file import save_picture
+from orbiframe_drawing.models import Chart
+from orbiframe_drawing.page import Page
+from orbiframe_drawing.picture import Curve, Item, Label, Picture, Shape, circle
 
 Floats = NDArray[np.float64]
 

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pyvista as pv
 
-from orbiframe import Config, Polyhedron, Registry, fit, formats
+from orbiframe import Config, Polyhedron, Registry, fit
+from orbiframe.files import gate as formats
 
 DATASETS = Path(__file__).parents[2] / "datasets"
 VIEW = [(5, -9, 11), (0, 0, 0), (0, 0, 1)]

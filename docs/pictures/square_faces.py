@@ -18,8 +18,9 @@ from matplotlib.collections import LineCollection
 from numpy.typing import NDArray
 from PIL import Image
 
-from orbiframe import Config, OrbifoldSurface, Points, Polyhedron, Registry, fit, formats
-from orbiframe.diagonals import outline
+from orbiframe import Config, OrbifoldSurface, Points, Polyhedron, Registry, fit
+from orbiframe.files import gate as formats
+from orbiframe.meshes.face_diagonals import outline
 
 Floats = NDArray[np.float64]
 

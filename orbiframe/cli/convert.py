@@ -13,7 +13,7 @@ from orbiframe.cli.losses import losses
 from orbiframe.cli.repairs import add_repairs, repaired
 from orbiframe.cli.streams import STREAM, choice, read, write
 from orbiframe.errors import FormatError, OrbiframeError, UsageError
-from orbiframe.registry import Registry
+from orbiframe.components.registry import Registry
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -104,7 +104,7 @@ def _convert(
 
 def _options(args: argparse.Namespace) -> dict[str, dict[str, Any]]:
     """The options of the reader and of the writer."""
-    from orbiframe.config import parsed_override, require_table
+    from orbiframe.fitting.config import parsed_override, require_table
 
     tables: dict[str, dict[str, Any]] = {"reader": {}, "writer": {"ascii": True} if args.ascii else {}}
     for text in args.set:

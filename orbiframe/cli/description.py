@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from orbiframe.polyhedron import Polyhedron
+    from orbiframe.meshes.polyhedron import Polyhedron
 
 
 def description(polyhedron: Polyhedron) -> dict[str, Any]:
@@ -17,8 +17,8 @@ def description(polyhedron: Polyhedron) -> dict[str, Any]:
     """
     import numpy as np
 
-    from orbiframe import measure
-    from orbiframe.topology import defects, surface_type
+    from orbiframe.meshes import sizes as measure
+    from orbiframe.meshes.surface_type import defects, surface_type
 
     surface = surface_type(polyhedron)
     lengths, valences = measure.edge_lengths(polyhedron), measure.valences(polyhedron)
@@ -62,7 +62,7 @@ def lines(described: dict[str, Any]) -> Iterator[str]:
 
 
 def _title(defect: dict[str, Any]) -> str:
-    from orbiframe.topology import Defect
+    from orbiframe.meshes.surface_type import Defect
 
     return str(Defect(**defect))
 

@@ -6,12 +6,12 @@ import os
 from pathlib import Path
 
 from orbiframe.errors import FormatError, UsageError
-from orbiframe.registry import Registry
+from orbiframe.components.registry import Registry
 
 
 def require_destination(path: Path, registry: Registry, format: str | None = None, *, kind: str = "writer") -> None:
     """Raise FormatError unless a writer takes the file (by its suffix, or the named format) and it can be made."""
-    from orbiframe.formats import component_name, exports
+    from orbiframe.files.gate import component_name, exports
 
     require_folder(path)
     if kind == "writer" and format is None and exports(path, registry):

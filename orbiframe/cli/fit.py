@@ -11,12 +11,12 @@ from orbiframe.cli.destination import require_destination, require_folder, requi
 from orbiframe.cli.progress import Progress
 from orbiframe.cli.repairs import add_repairs, repaired, repairs_asked
 from orbiframe.cli.report import json_text, summary, write_report
-from orbiframe.registry import Registry
+from orbiframe.components.registry import Registry
 
 if TYPE_CHECKING:
-    from orbiframe.config import Config
-    from orbiframe.pipeline import Result
-    from orbiframe.polyhedron import Polyhedron
+    from orbiframe.fitting.config import Config
+    from orbiframe.fitting.pipeline import Result
+    from orbiframe.meshes.polyhedron import Polyhedron
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -44,9 +44,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace, registry: Registry) -> int:
     """Fit, write what was asked for, and say what came out."""
-    from orbiframe import formats, pipeline
-    from orbiframe.config import Config
-    from orbiframe.surface_file import save_surface
+    from orbiframe.files import gate as formats
+    from orbiframe.fitting import pipeline
+    from orbiframe.fitting.config import Config
+    from orbiframe.files.surface_file import save_surface
 
     config = Config.load(args.config, overrides(args))
     for path in config.plugins:
@@ -72,7 +73,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
 
 def _export(path: Path, result: Result, registry: Registry, progress: Progress) -> None:
     """Write the surface itself, which takes seconds where it has thousands of patches."""
-    from orbiframe import formats
+    from orbiframe.files import gate as formats
 
     progress("export", None)
     start = time.perf_counter()
@@ -82,7 +83,7 @@ def _export(path: Path, result: Result, registry: Registry, progress: Progress) 
 
 
 def _repaired(args: argparse.Namespace, config: Config, registry: Registry) -> Polyhedron:
-    from orbiframe import formats
+    from orbiframe.files import gate as formats
 
     format = None if config.mesh.open else config.mesh.name
     mesh = formats.read(args.mesh, registry, format=format, degenerate=args.drop_degenerate)
@@ -105,8 +106,8 @@ def overrides(args: argparse.Namespace) -> list[str]:
 
 def _exact(args: argparse.Namespace, config: Config, registry: Registry) -> bool:
     """Whether the surface itself is written and not a mesh on it: where the format and the functions allow it."""
-    from orbiframe.exact_patches import has_exact_patches
-    from orbiframe.formats import exports
+    from orbiframe.surfaces.triangle_patches import has_exact_patches
+    from orbiframe.files.gate import exports
 
     return exports(args.output, registry) and has_exact_patches(registry.load("basis", config.basis.name))
 

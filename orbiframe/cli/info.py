@@ -13,7 +13,7 @@ from orbiframe.cli.loops import add_loops, show_loops
 from orbiframe.cli.report import plain
 from orbiframe.cli.streams import choice, read
 from orbiframe.errors import OrbiframeError, UsageError
-from orbiframe.registry import Registry
+from orbiframe.components.registry import Registry
 
 Described = dict[str, Any]
 
@@ -51,7 +51,7 @@ def _described(path: Path, args: argparse.Namespace, registry: Registry) -> Desc
 
 def _welds(path: Path, args: argparse.Namespace, registry: Registry) -> bool:
     """Whether the reader of a file joins equal corners of faces."""
-    from orbiframe.formats import component_name
+    from orbiframe.files.gate import component_name
 
     name = choice("reader", args.input_format, registry).component
     return registry.component("reader", component_name(path, registry, "reader", name)).welds

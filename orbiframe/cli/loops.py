@@ -13,10 +13,10 @@ from orbiframe.cli.destination import require_folder, require_other_file
 from orbiframe.cli.report import plain, write_text
 from orbiframe.cli.streams import read
 from orbiframe.errors import UsageError
-from orbiframe.registry import Registry
+from orbiframe.components.registry import Registry
 
 if TYPE_CHECKING:
-    from orbiframe.polyhedron import Polyhedron
+    from orbiframe.meshes.polyhedron import Polyhedron
 
 MARKER = "tree-cotree"
 
@@ -52,8 +52,8 @@ def marked(mesh: Polyhedron, registry: Registry) -> dict[str, Any]:
     """
     import numpy as np
 
-    from orbiframe.presentation import Presentation
-    from orbiframe.topology import require_closed_surface, without_unused_vertices
+    from orbiframe.words.presentation import Presentation
+    from orbiframe.meshes.surface_type import require_closed_surface, without_unused_vertices
 
     require_closed_surface(mesh)
     used = np.unique(mesh.tail)
@@ -68,7 +68,7 @@ def marked(mesh: Polyhedron, registry: Registry) -> dict[str, Any]:
 
 
 def _letters(group: Any) -> list[str]:
-    from orbiframe.word import text_of
+    from orbiframe.words.word import text_of
 
     return [text_of(letter) for letter in group.generators]
 

@@ -12,7 +12,7 @@ from importlib.metadata import version
 
 from orbiframe.cli import plugin as commands
 from orbiframe.errors import OrbiframeError, UsageError
-from orbiframe.registry import Registry
+from orbiframe.components.registry import Registry
 
 INTERRUPTED = 130
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")

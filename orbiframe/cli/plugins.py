@@ -9,7 +9,7 @@ from dataclasses import asdict
 
 from orbiframe.errors import PluginError, UsageError
 from orbiframe.plugin import KINDS, Component
-from orbiframe.registry import Registry, resolve
+from orbiframe.components.registry import Registry, resolve
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -78,7 +78,7 @@ def _table(shown: list[tuple[Component, str]], options: bool) -> Iterator[str]:
 
 
 def _option_lines(component: Component) -> Iterator[str]:
-    from orbiframe.options import options_of
+    from orbiframe.components.options import options_of
 
     try:
         target = resolve(component)
@@ -100,7 +100,7 @@ def _data(shown: list[tuple[Component, str]], registry: Registry, options: bool)
 
 
 def _option_data(component: Component) -> list[dict[str, object]]:
-    from orbiframe.options import options_of
+    from orbiframe.components.options import options_of
 
     return [
         {"name": o.name, "type": o.type_name, "required": o.required, "default": None if o.required else o.default}

@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from orbiframe.polyhedron import Polyhedron
-    from orbiframe.repair import Repair
+    from orbiframe.meshes.polyhedron import Polyhedron
+    from orbiframe.meshes.repair import Repair
 
 # The order in which repairs are made: each makes sense of what the ones before it leave.
 ORDER = ("weld", "drop_degenerate", "split_nonmanifold_vertices", "component", "orient", "triangulate")
@@ -34,7 +34,7 @@ def repairs_asked(args: argparse.Namespace) -> bool:
 
 def repaired(polyhedron: Polyhedron, args: argparse.Namespace, *, title: str = "", quiet: bool = False) -> Polyhedron:
     """The polyhedron after all repairs that are asked for; what each did is said, under the title."""
-    from orbiframe import repair
+    from orbiframe.meshes import repair
 
     for name, arguments in _asked(args):
         function: Callable[..., Repair] = getattr(repair, name)

@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from orbiframe.errors import FormatError, PluginError, UsageError
-from orbiframe.registry import Registry
+from orbiframe.components.registry import Registry
 
 if TYPE_CHECKING:
-    from orbiframe.polyhedron import Polyhedron
+    from orbiframe.meshes.polyhedron import Polyhedron
 
 STREAM = Path("-")
 _BLOCK = 2**20
@@ -57,7 +57,7 @@ def read(
 
     format: a name of a reader or a suffix.
     """
-    from orbiframe import formats
+    from orbiframe.files import gate as formats
 
     chosen = choice("reader", format, registry)
     given: dict[str, Any] = {"format": chosen.component, "options": options, "degenerate": degenerate}
@@ -86,7 +86,7 @@ def write(
 
     format: a name of a writer or a suffix. What goes to the standard output is made whole first.
     """
-    from orbiframe import formats
+    from orbiframe.files import gate as formats
 
     chosen = choice("writer", format, registry)
     if path != STREAM and chosen.suffix in (None, path.suffix.lower()):

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array, diags_array
 
-from orbiframe.atlas import Points
-from orbiframe.basis import Basis, DifferentiableBasis
+from orbiframe.orbifolds.atlas import Points
+from orbiframe.functions.basis import Basis, DifferentiableBasis
 from orbiframe.errors import GeometryError
-from orbiframe.orbifold import Orbifold
+from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.testing.lab import Lab
-from orbiframe.triangulation import Triangulation
+from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
 Component = Callable[[Orbifold, Triangulation], Basis]

@@ -8,9 +8,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from orbiframe.options import options_of
+from orbiframe.components.options import options_of
 from orbiframe.plugin import Component
-from orbiframe.registry import Registry, resolve
+from orbiframe.components.registry import Registry, resolve
 from orbiframe.testing import component_laws
 from orbiframe.testing.kit import Verdict, bound, has_laws, laws_of, tried
 from orbiframe.testing.lab import Lab

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from orbiframe.plugin import Component
-from orbiframe.registry import resolve
+from orbiframe.components.registry import resolve
 
 # Positional arguments that the pipeline hands over; keyword-only arguments come from the configuration.
 POSITIONAL = {

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from orbiframe.errors import FitError
-from orbiframe.surface import OrbifoldSurface
+from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.testing.lab import Lab
 
 Component = Callable[[Path, OrbifoldSurface], Any]

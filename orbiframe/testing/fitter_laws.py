@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.atlas import Points
-from orbiframe.basis import Basis, OrbitSumBasis
-from orbiframe.fitter import Fitter
-from orbiframe.samples import Samples
+from orbiframe.orbifolds.atlas import Points
+from orbiframe.functions.basis import Basis, OrbitSumBasis
+from orbiframe.functions.fitter import Fitter
+from orbiframe.functions.samples import Samples
 from orbiframe.testing.lab import Lab
-from orbiframe.triangulation import Triangulation
+from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
 Component = Callable[[], Fitter]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.geometry import Geometry
+from orbiframe.planes.geometry import Geometry
 from orbiframe.testing.lab import Lab
 
 Floats = NDArray[np.float64]

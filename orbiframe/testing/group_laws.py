@@ -9,14 +9,14 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from orbiframe.atlas import Atlas
-from orbiframe.elements import elements_within
+from orbiframe.orbifolds.atlas import Atlas
+from orbiframe.groups.elements import elements_within
 from orbiframe.errors import GeometryError
-from orbiframe.geometry import Geometry
-from orbiframe.group import Group
-from orbiframe.registry import Registry
+from orbiframe.planes.geometry import Geometry
+from orbiframe.groups.group import Group
+from orbiframe.components.registry import Registry
 from orbiframe.testing.lab import Lab
-from orbiframe.word import Word
+from orbiframe.words.word import Word
 
 Floats = NDArray[np.float64]
 Component = Callable[[Geometry, Word], Group]

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbiframe.polyhedron import Polyhedron
+from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.testing.polyhedra import reference_polyhedra
 
 if TYPE_CHECKING:
-    from orbiframe.orbifold import Orbifold
-    from orbiframe.surface import OrbifoldSurface
-    from orbiframe.triangulation import Triangulation
+    from orbiframe.orbifolds.orbifold import Orbifold
+    from orbiframe.surfaces.surface import OrbifoldSurface
+    from orbiframe.triangulations.triangulation import Triangulation
 
 
 @dataclass(frozen=True)

@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from orbiframe.corner_elements import corner_elements
-from orbiframe.geometry import Geometry
-from orbiframe.marking import Marking
-from orbiframe.polygon import regular_polygon
-from orbiframe.polyhedron import Polyhedron
-from orbiframe.registry import Registry
-from orbiframe.spin import Spin
+from orbiframe.groups.corner_elements import corner_elements
+from orbiframe.planes.geometry import Geometry
+from orbiframe.groups.marking import Marking
+from orbiframe.groups.fundamental_polygon import regular_polygon
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.components.registry import Registry
+from orbiframe.planes.precise_isometry import Spin
 from orbiframe.testing.lab import Lab
-from orbiframe.topology import surface_type
-from orbiframe.word import Word
+from orbiframe.meshes.surface_type import surface_type
+from orbiframe.words.word import Word
 
 Component = Callable[[Polyhedron], Marking]
 Ints = NDArray[np.intp]

@@ -7,13 +7,13 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.geometry import Geometry
-from orbiframe.marked_group import MarkedGroup
-from orbiframe.polyhedron import Polyhedron
-from orbiframe.registry import Registry
+from orbiframe.planes.geometry import Geometry
+from orbiframe.groups.marked_group import MarkedGroup
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.components.registry import Registry
 from orbiframe.testing import parametrizer_laws as maps
 from orbiframe.testing.lab import Lab
-from orbiframe.triangulation import Triangulation
+from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
 Component = Callable[[Triangulation, Floats], Triangulation]

@@ -10,18 +10,18 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.atlas import Atlas
-from orbiframe.diagonals import triangulated
+from orbiframe.orbifolds.atlas import Atlas
+from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.errors import MapError
-from orbiframe.geometry import Geometry
-from orbiframe.marked_group import MarkedGroup
-from orbiframe.orbifold import Orbifold
-from orbiframe.polyhedron import Polyhedron
-from orbiframe.refinement import refine
-from orbiframe.registry import Registry
+from orbiframe.planes.geometry import Geometry
+from orbiframe.groups.marked_group import MarkedGroup
+from orbiframe.orbifolds.orbifold import Orbifold
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.subdivision import refine
+from orbiframe.components.registry import Registry
 from orbiframe.testing.lab import Lab
-from orbiframe.topology import surface_type
-from orbiframe.triangulation import Triangulation
+from orbiframe.meshes.surface_type import surface_type
+from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
 Component = Callable[[Polyhedron, Geometry, MarkedGroup | None], Triangulation]

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from orbiframe.polyhedron import Polyhedron
+from orbiframe.meshes.polyhedron import Polyhedron
 
 
 def reference_polyhedra() -> Mapping[str, Polyhedron]:

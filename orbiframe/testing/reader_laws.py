@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from orbiframe.errors import FormatError
-from orbiframe.polyhedron import Polyhedron
+from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.testing.lab import Lab
 from orbiframe.testing.writer_laws import SAMPLES, files, require_same_faces
 

@@ -8,16 +8,16 @@ from types import MappingProxyType
 
 import numpy as np
 
-from orbiframe.basis import Basis
-from orbiframe.bisection import Bisection
-from orbiframe.diagonals import triangulated
-from orbiframe.fitter import Fitter
-from orbiframe.refinement import refine
-from orbiframe.registry import Registry
-from orbiframe.sampling import coordinate_samples
-from orbiframe.surface import OrbifoldSurface
+from orbiframe.functions.basis import Basis
+from orbiframe.meshes.bisection import Bisection
+from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe.functions.fitter import Fitter
+from orbiframe.meshes.subdivision import refine
+from orbiframe.components.registry import Registry
+from orbiframe.functions.sampling import coordinate_samples
+from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.testing.polyhedra import reference_polyhedra
-from orbiframe.triangulation import Triangulation
+from orbiframe.triangulations.triangulation import Triangulation
 
 # Geometry and parametrizer for the sign of the Euler characteristic of each polyhedron, and how fine it becomes.
 RECIPES = {

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.errors import FormatError
-from orbiframe.polyhedron import Polyhedron
+from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.testing.lab import Lab
 
 Component = Callable[..., Any]

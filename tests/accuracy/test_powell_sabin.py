@@ -12,7 +12,7 @@ from scipy.sparse import diags_array
 from scipy.sparse.linalg import eigsh, spsolve
 
 from orbiframe import ElementBasis, GeodesicTriangulation, Points
-from orbiframe.galerkin import mass, stiffness
+from orbiframe.splines.galerkin import mass, stiffness
 
 # Strohmaier and Uski, "An algorithm for the computation of eigenvalues, spectral zeta functions and
 # zeta-determinants on hyperbolic surfaces", 2013.

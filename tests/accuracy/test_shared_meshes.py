@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 from fitted import REGISTRY, config
 
-from orbiframe import formats, pipeline
-from orbiframe.diagonals import triangulated
+from orbiframe.files import gate as formats
+from orbiframe.fitting import pipeline
+from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.errors import TopologyError
-from orbiframe.topology import oriented, require_closed_surface, surface_type, without_unused_vertices
+from orbiframe.meshes.surface_type import oriented, require_closed_surface, surface_type, without_unused_vertices
 
 FOLDER = Path(__file__).parents[2].parent / "shared" / "meshes"
 pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="there is no folder shared/meshes beside the repository")

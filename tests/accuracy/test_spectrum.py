@@ -14,10 +14,10 @@ from orbiframe_groups.finite import FiniteGroup
 from orbiframe_groups.lattice import lattice_group
 from orbiframe_groups.regular_polygon import regular_polygon_group
 
-from orbiframe.cell_triangulation import cell_triangulation
+from orbiframe.delaunay.polygon_fan import cell_triangulation
 from orbiframe.errors import FitError
-from orbiframe.spectrum import laplace_spectrum
-from orbiframe.word import Word
+from orbiframe_invariants.laplace_spectrum import laplace_spectrum
+from orbiframe.words.word import Word
 
 PI2 = np.pi**2
 # Strohmaier and Uski (2013) for the Bolza surface; closed forms for the sphere and flat surfaces.

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from orbiframe import formats
-from orbiframe.registry import Registry
+from orbiframe.files import gate as formats
+from orbiframe.components.registry import Registry
 
 REGISTRY = Registry.discover()
 

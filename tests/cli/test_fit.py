@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from orbiframe import pipeline
+from orbiframe.fitting import pipeline
 from orbiframe.cli.progress import Progress
 from orbiframe.cli.report import json_text, summary, write_report
 

@@ -12,7 +12,7 @@ def _no_fit(monkeypatch):
     def refuse(*_):
         raise AssertionError("a fit was begun")
 
-    monkeypatch.setattr("orbiframe.pipeline.fit", refuse)
+    monkeypatch.setattr("orbiframe.fitting.pipeline.fit", refuse)
 
 
 @pytest.mark.parametrize("suffix", [".vtu", ".step", ".igs"])

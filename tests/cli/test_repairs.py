@@ -7,11 +7,11 @@ import sys
 import numpy as np
 import pytest
 
-from orbiframe import formats
-from orbiframe.polyhedron import Polyhedron
-from orbiframe.registry import Registry
+from orbiframe.files import gate as formats
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.components.registry import Registry
 from orbiframe.testing.polyhedra import reference_polyhedra
-from orbiframe.topology import reversed_faces
+from orbiframe.meshes.surface_type import reversed_faces
 
 REGISTRY = Registry.discover()
 MESHES = reference_polyhedra()

@@ -10,8 +10,9 @@ import pytest
 from corpus.answers import Mesh, Refused
 from corpus.bad_files import cases
 
-from orbiframe import FormatError, Polyhedron, formats
-from orbiframe.registry import Registry
+from orbiframe import FormatError, Polyhedron
+from orbiframe.files import gate as formats
+from orbiframe.components.registry import Registry
 
 REGISTRY = Registry.discover()
 CASES = list(cases())

@@ -13,8 +13,9 @@ from hypothesis import HealthCheck, given, settings, strategies as st
 from orbiframe_polygons.threemf_reader import MODEL, RELATIONS
 from orbiframe_polygons.threemf_writer import RELATION
 
-from orbiframe import FormatError, formats
-from orbiframe.registry import Registry
+from orbiframe import FormatError
+from orbiframe.files import gate as formats
+from orbiframe.components.registry import Registry
 
 REGISTRY = Registry.discover()
 VALID = {

@@ -15,8 +15,9 @@ from corpus import bad_files, obj_files, ply_text_files
 from orbiframe_polygons.threemf_reader import MODEL, RELATIONS
 from orbiframe_polygons.threemf_writer import RELATION
 
-from orbiframe import FormatError, formats
-from orbiframe.registry import Registry
+from orbiframe import FormatError
+from orbiframe.files import gate as formats
+from orbiframe.components.registry import Registry
 
 REGISTRY = Registry.discover()
 SECRET = "secret-place"
@@ -57,8 +58,9 @@ def test_every_file_of_the_corpus_takes_less_than_a_second_and_100_megabytes(tmp
 READ = """
 import sys, warnings
 from pathlib import Path
-from orbiframe import FormatError, formats
-from orbiframe.registry import Registry
+from orbiframe import FormatError
+from orbiframe.files import gate as formats
+from orbiframe.components.registry import Registry
 
 def listen(event, arguments):
     if event in ("open", "os.listdir", "os.scandir", "socket.connect") and "secret-place" in repr(arguments):

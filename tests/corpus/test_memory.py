@@ -9,7 +9,7 @@ import pytest
 from documents import ROOT
 from plugins.test_compiled_texts import SWITCHES
 
-from orbiframe import formats
+from orbiframe.files import gate as formats
 
 sys.path.append(str(ROOT / "benchmarks"))
 from formats import ARRAYS, REGISTRY, torus

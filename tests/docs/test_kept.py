@@ -9,7 +9,7 @@ import pytest
 from documents import ROOT, section
 from kept import suffixes
 
-from orbiframe.registry import Registry
+from orbiframe.components.registry import Registry
 
 REGISTRY = Registry.discover()
 PAGE = section(ROOT / "docs" / "reference" / "formats.md", "What each suffix keeps")

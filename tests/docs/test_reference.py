@@ -12,11 +12,13 @@ import numpy as np
 import pytest
 from documents import ROOT, section, table_rows
 
-from orbiframe import FormatError, formats, pipeline
+from orbiframe import FormatError
+from orbiframe.files import gate as formats
+from orbiframe.fitting import pipeline
 from orbiframe.cli import plugin as commands
-from orbiframe.config import OPEN_NAMES, STEPS, Config, Output
-from orbiframe.options import options_of
-from orbiframe.registry import Registry
+from orbiframe.fitting.config import OPEN_NAMES, STEPS, Config, Output
+from orbiframe.components.options import options_of
+from orbiframe.components.registry import Registry
 
 REFERENCE = ROOT / "docs" / "reference"
 

@@ -8,7 +8,7 @@ import pytest
 
 from orbiframe.errors import OrbiframeError, UsageError
 from orbiframe.plugin import KINDS, Component
-from orbiframe.registry import Registry, resolve
+from orbiframe.components.registry import Registry, resolve
 from orbiframe.testing import Lab, component_laws, contract_tests, laws_of
 from orbiframe.testing.check import check, equipments
 from orbiframe.testing.kit import bound, has_laws, tried

@@ -11,7 +11,7 @@ from orbiframe_bases.gaussian import Gaussian
 from orbiframe_fitters.least_squares import LeastSquares
 
 from orbiframe.testing import Lab, basis_laws, fitter_laws
-from orbiframe.triangulation import Triangulation
+from orbiframe.triangulations.triangulation import Triangulation
 
 
 class SurfaceLab(Lab):

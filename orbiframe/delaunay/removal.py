@@ -1,0 +1,117 @@
+"""Vertices taken out of a Delaunay triangulation of X/H one by one."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import ArrayLike, NDArray
+
+from orbiframe.delaunay.triangle_arrays import Cells, after, bare, before, copy, corner, flip, merge, move, multiply
+from orbiframe.errors import MapError
+from orbiframe.delaunay.lawson_flips import legalise, outside, push, push_around, turn
+
+Ints = NDArray[np.intp]
+
+
+def remove(cells: Cells, vertices: ArrayLike) -> None:
+    """Take vertices out of Delaunay cells, in an order chosen by chance with a fixed seed.
+
+    Raises MapError where what is left has no geodesic triangulation: sites in one half of a sphere.
+    """
+    order = np.random.default_rng(0).permutation(np.asarray(vertices, dtype=np.intp))
+    stuck = _remove(cells, order)
+    if stuck >= 0:
+        raise MapError(
+            f"the sites are too few for geodesic triangles: vertex {stuck} cannot be removed; on the sphere and the "
+            "projective plane no half of the sphere may be without a site: give more sites, spread over all of it"
+        )
+
+
+@njit(cache=True)
+def _remove(cells, order):  # type: ignore[no-untyped-def]
+    """Remove vertices; returns -1, or the first that could not be removed."""
+    ring = (np.empty(64, dtype=np.intp), np.empty((64, 3)), np.empty(64, dtype=np.bool_))
+    for vertex in order:
+        top = 0
+        while True:
+            degree, ring = _link(cells, vertex, ring)
+            if degree == 3:
+                break
+            e = _soonest(cells.curvature, corner(cells, cells.seat[vertex]), degree, ring)
+            if e < 0:
+                return vertex
+            flip(cells, e)
+            top = push_around(cells, top, e)
+        f = cells.seat[vertex] // 3
+        merge(cells, cells.seat[vertex])
+        for e in range(3 * f, 3 * f + 3):
+            top = push(cells, top, e)
+        legalise(cells, top, 1_000_000)
+    return -1
+
+
+@njit(cache=True)
+def _link(cells, vertex, ring):  # type: ignore[no-untyped-def]
+    """Walk counterclockwise round a vertex, in the frame of the triangle at its seat.
+
+    Enters into `ring` the edges at the vertex, as halfedges; where they lead; whether to the vertex itself. Returns
+    the number of edges and the ring, a longer one where it has to be. Frames that are mirror images are walked round
+    the other way.
+    """
+    edge, x, loop = ring
+    route, moved = np.eye(3), np.empty((3, 3))
+    slot, mirrored, degree = cells.seat[vertex], False, 0
+    while degree == 0 or slot != cells.seat[vertex]:
+        if degree == len(edge):
+            edge, loop = np.concatenate((edge, edge)), np.concatenate((loop, loop))
+            x = np.concatenate((x, x))
+        end = before(slot) if mirrored else after(slot)
+        edge[degree] = end if mirrored else slot
+        x[degree, 0], x[degree, 1], x[degree, 2] = move(cells.curvature, route, corner(cells, end))
+        loop[degree] = cells.vertex[end] == vertex
+        degree += 1
+        way = slot if mirrored else before(slot)
+        multiply(route, cells.gluing[way], moved)
+        copy(moved, route)
+        starts = mirrored != cells.same[way]
+        slot = after(cells.twin[way]) if starts else cells.twin[way]
+        mirrored = starts
+    return degree, (edge, x, loop)
+
+
+@bare
+def _soonest(curvature, v, degree, ring):  # type: ignore[no-untyped-def]
+    """The edge at a vertex v that flips first if v, with all its lifts, is raised over the surface of the lifted sites.
+
+    That is the way in which Delaunay triangulations with growing weights lose a vertex, so it never gets stuck before
+    v is free, and ends at the Delaunay triangulation of the others (Devillers, On deletion in Delaunay triangulations,
+    2002; for loops at v the other lifts rise as well). Only edges in convex quadrilaterals count; at degree 4 also
+    those whose flip leaves v on an edge or beyond it, since v goes next. Returns -1 if there is none.
+    """
+    edge, x, loop = ring
+    best, soonest = -1, np.inf
+    free = True
+    for i in range(degree):
+        free = free and not loop[i]
+    for i in range(degree):
+        i0, i2 = (i - 1) % degree, (i + 1) % degree
+        a, b, c = (x[i0, 0], x[i0, 1], x[i0, 2]), (x[i, 0], x[i, 1], x[i, 2]), (x[i2, 0], x[i2, 1], x[i2, 2])
+        ear = turn(curvature, a, b, c)
+        if degree == 4 and free:
+            i3 = (i + 2) % 4
+            rest = turn(curvature, c, (x[i3, 0], x[i3, 1], x[i3, 2]), a)
+        else:
+            rest = turn(curvature, v, a, c)
+        speed = ear
+        if loop[i0]:
+            speed -= turn(curvature, v, b, c)
+        if loop[i]:
+            speed += rest
+        if loop[i2]:
+            speed -= turn(curvature, v, a, b)
+        if ear <= 0 or rest <= 0 or speed <= 0:
+            continue
+        time = outside(curvature, v, a, b, c)[0] / speed
+        if time < soonest:
+            best, soonest = edge[i], time
+    return best

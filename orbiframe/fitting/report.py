@@ -1,0 +1,118 @@
+"""Report: what a fit did, as plain data for people and machines."""
+
+from __future__ import annotations
+
+import platform
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe.fitting.config import Config
+from orbiframe.triangulations.lost_digits import crowding_of
+from orbiframe.meshes.face_diagonals import RULE
+from orbiframe.triangulations.face_shapes import FaceShapes
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.functions.samples import Samples
+from orbiframe.surfaces.surface import OrbifoldSurface
+from orbiframe.meshes.surface_type import SurfaceType, vector_areas
+from orbiframe.triangulations.triangulation import Triangulation
+
+_PACKAGES = ("orbiframe", "numpy", "scipy", "numba")
+
+
+class Deviation(NamedTuple):
+    """Root mean square and largest distance of the surface from the mesh, relative to the bounding box's diagonal."""
+
+    rms: float
+    max: float
+
+
+def report(
+    surface: OrbifoldSurface,
+    surface_type: SurfaceType,
+    polyhedron: Polyhedron,
+    config: Config,
+    samples: Samples,
+    deviation: Deviation,
+    faces: tuple[FaceShapes, FaceShapes | None],
+    output: Polyhedron,
+    seconds: dict[str, float],
+) -> dict[str, Any]:
+    """All that a user should know of a fit, with plain numbers and strings only."""
+    triangulation = surface.triangulation
+    return {
+        "surface": {
+            "name": surface_type.name,
+            "euler_characteristic": surface_type.euler_characteristic,
+            "orientable": surface_type.orientable,
+            "genus": surface_type.genus,
+            "components": surface_type.components,
+        },
+        "triangles": _cut_report(polyhedron),
+        "geometry": triangulation.orbifold.geometry.name,
+        "group": {
+            "source": triangulation.group,
+            "patches": triangulation.orbifold.atlas.patch_count,
+            "relation_defect": triangulation.relation_defect,
+        },
+        "map": _map_report(triangulation),
+        "faces": _faces_report(*faces),
+        "fit": {
+            "basis": config.basis.name,
+            "size": surface.basis.size,
+            "samples": len(samples.weights),
+            "rms": deviation.rms,
+            "max": deviation.max,
+        },
+        "output": {
+            "vertices": len(output.vertices),
+            "faces": output.face_count,
+            "euler_characteristic": len(output.vertices) - output.edge_count + output.face_count,
+        },
+        "seconds": {stage: round(spent, 4) for stage, spent in seconds.items()},
+        "versions": versions(),
+    }
+
+
+def _faces_report(now: FaceShapes, before: FaceShapes | None) -> dict[str, Any]:
+    """The shapes of the faces of the polyhedron in X, and before an optimizer changed them, if one did."""
+    return {**now.summary(), "before": None if before is None else before.summary()}
+
+
+def _cut_report(polyhedron: Polyhedron) -> dict[str, Any]:
+    """How the faces of the input were cut into triangles, without new vertices."""
+    larger = polyhedron.face_sizes[polyhedron.face_sizes > 3]
+    return {"faces_cut": len(larger), "diagonals": int((larger - 3).sum()), "rule": RULE if len(larger) else "none"}
+
+
+def _map_report(triangulation: Triangulation) -> dict[str, Any]:
+    weights = np.linalg.norm(vector_areas(triangulation.polyhedron), axis=1)
+    median, p95 = _weighted_quantiles(triangulation.angle_distortion, weights, [0.5, 0.95])
+    return {
+        "triangles": triangulation.polyhedron.face_count,
+        "not_positive": triangulation.not_positive,
+        "area_defect": triangulation.area_defect,
+        "crowding": crowding_of(triangulation)._asdict(),
+        "angle_distortion": {"median": median, "p95": p95, "max": float(triangulation.angle_distortion.max())},
+        "weights": triangulation.weights,
+    }
+
+
+def _weighted_quantiles(values: NDArray[np.float64], weights: NDArray[np.float64], levels: list[float]) -> list[float]:
+    order = np.argsort(values, kind="stable")
+    share = np.cumsum(weights[order]) / weights.sum()
+    places = np.minimum(np.searchsorted(share, levels), len(order) - 1)
+    return [float(value) for value in values[order[places]]]
+
+
+def versions() -> dict[str, str]:
+    """The versions that a result depends on."""
+    found = {"python": platform.python_version()}
+    for package in _PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            continue
+    return found

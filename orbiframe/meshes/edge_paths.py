@@ -1,0 +1,224 @@
+"""Spacing: shortest paths along the edges of a polyhedron, vertices spread evenly by them, points sorted by place."""
+
+from __future__ import annotations
+
+import heapq
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import ArrayLike, NDArray
+
+from orbiframe.meshes.polyhedron import Polyhedron
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+# Steps that put a zero bit between any two of the 32 lowest bits of a number.
+_SPREAD_BITS = (
+    (16, 0x0000FFFF0000FFFF),
+    (8, 0x00FF00FF00FF00FF),
+    (4, 0x0F0F0F0F0F0F0F0F),
+    (2, 0x3333333333333333),
+    (1, 0x5555555555555555),
+)
+
+
+class Graph(NamedTuple):
+    """The edges of a polyhedron seen from its vertices.
+
+    The links of vertex i are start[i] to start[i + 1] - 1. Link k leads to vertex neighbour[k], has length[k] >= 0 and
+    runs along halfedge[k]; backward[k] says that it runs from the head of that halfedge to its tail. Every edge is two
+    links, one each way. start: (V + 1,); the others: (2 edges,).
+    """
+
+    start: Ints
+    neighbour: Ints
+    length: Floats
+    halfedge: Ints
+    backward: Bools
+
+
+class Spacing(NamedTuple):
+    """Chosen vertices (k,); for every vertex (V,) the number of the nearest chosen one and the distance to it."""
+
+    chosen: Ints
+    owner: Ints
+    distance: Floats
+
+
+class Forest(NamedTuple):
+    """Shortest paths from sources: distance (V,), number of the source (V,), last link of the path (V,).
+
+    `link` indexes the links of the graph and is -1 at sources; `order` lists the vertices from near to far, so that
+    every vertex stands after the one before it on its path. Vertices that no source reaches have distance inf and
+    owner -1 and are missing from `order`. `parent` is the vertex before each on its path, -1 at sources.
+    """
+
+    distance: Floats
+    owner: Ints
+    link: Ints
+    parent: Ints
+    order: Ints
+
+
+def edge_graph(polyhedron: Polyhedron, lengths: ArrayLike | None = None) -> Graph:
+    """The graph of the edges of a polyhedron; lengths: one per halfedge, (H,), by default the lengths in space."""
+    per_halfedge = polyhedron.edge_lengths if lengths is None else np.asarray(lengths, dtype=np.float64)
+    edges = np.flatnonzero(polyhedron.representative)
+    tail, head = polyhedron.tail[edges], polyhedron.head[edges]
+    order = np.argsort(np.concatenate([tail, head]), kind="stable")
+    degree = np.bincount(np.concatenate([tail, head]), minlength=len(polyhedron.vertices))
+    halfedge = np.concatenate([edges, edges])[order]
+    return Graph(
+        start=np.concatenate([[0], np.cumsum(degree)]).astype(np.intp),
+        neighbour=np.concatenate([head, tail])[order],
+        length=np.ascontiguousarray(per_halfedge[halfedge], dtype=np.float64),
+        halfedge=halfedge,
+        backward=order >= len(edges),
+    )
+
+
+def farthest_points(graph: Graph, count: int, *, first: int = 0, radius: float = 0.0) -> Spacing:
+    """Vertices spread evenly: each next one is the vertex farthest from all before it, the lowest of equals.
+
+    Stops at `count` vertices, or as soon as every vertex lies closer than `radius` to a chosen one, or coincides with
+    one. By incremental Dijkstra: a new vertex only searches the part of the graph that becomes its own.
+    """
+    return Spacing(*_farthest(graph.start, graph.neighbour, graph.length, count, first, radius))
+
+
+def covering_points(graph: Graph, radius: float) -> Ints:
+    """Vertices at least `radius` from each other, with all other vertices nearer than that to one of them.
+
+    The first vertex, and then each next one that is still too far from all before it: as many as `farthest_points`
+    takes, about, and several times faster, because nothing beyond the radius is searched.
+    """
+    return np.asarray(_covering(graph.start, graph.neighbour, graph.length, radius))
+
+
+def dijkstra_forest(graph: Graph, sources: ArrayLike) -> Forest:
+    """The shortest path from the nearest source to every vertex; equal distances go to the source found first."""
+    return Forest(*_forest(graph.start, graph.neighbour, graph.length, np.asarray(sources, dtype=np.intp)))
+
+
+def joining_edges(count: int, tail: Ints, head: Ints) -> Bools:
+    """Which of the edges (E,) join parts of `count` vertices that the edges before them leave apart.
+
+    They make a spanning forest; where the edges are sorted by length, the shortest one (Kruskal 1956).
+    """
+    return np.asarray(_joining(count, tail, head))
+
+
+def curve_order(x: Floats) -> Ints:
+    """Points of X in one frame, (n, 3), sorted along a space-filling curve, so that neighbours in the list are near.
+
+    Morton's curve in (x1, x2) on a grid of 2^31 by 2^31 cells over the points, one half of S^2 after the other.
+    """
+    if len(x) == 0:
+        return np.zeros(0, dtype=np.intp)
+    plane = x[:, 1:] - x[:, 1:].min(axis=0)
+    cell = (plane * ((2**31 - 1) / (plane.max() or 1.0))).astype(np.uint64)
+    for shift, mask in _SPREAD_BITS:
+        cell = (cell | cell << np.uint64(shift)) & np.uint64(mask)
+    half = (x[:, 0] < 0).astype(np.uint64) << np.uint64(62)
+    return np.argsort(cell[:, 0] | cell[:, 1] << np.uint64(1) | half, kind="stable")
+
+
+@njit(cache=True)
+def _farthest(start, neighbour, length, count, first, radius):  # type: ignore[no-untyped-def]
+    size = len(start) - 1
+    distance, owner = np.full(size, np.inf), np.full(size, -1)
+    chosen = np.empty(min(count, size), dtype=np.intp)
+    # distances only fall: the top of `waiting` is the farthest vertex unless its entry is out of date
+    waiting = [(-np.inf, vertex) for vertex in range(size)]
+    found, vertex = 0, first
+    while found < len(chosen):
+        chosen[found] = vertex
+        distance[vertex], owner[vertex] = 0.0, found
+        queue = [(0.0, vertex)]
+        while queue:
+            near, i = heapq.heappop(queue)
+            if near > distance[i]:
+                continue
+            for k in range(start[i], start[i + 1]):
+                j, far = neighbour[k], near + length[k]
+                if far < distance[j]:
+                    distance[j], owner[j] = far, found
+                    heapq.heappush(queue, (far, j))
+        found += 1
+        top, vertex = waiting[0]
+        while -top != distance[vertex]:
+            heapq.heapreplace(waiting, (-distance[vertex], vertex))
+            top, vertex = waiting[0]
+        if distance[vertex] < radius or distance[vertex] == 0.0:
+            break
+    return chosen[:found].copy(), owner, distance
+
+
+@njit(cache=True)
+def _covering(start, neighbour, length, radius):  # type: ignore[no-untyped-def]
+    distance = np.full(len(start) - 1, radius)
+    chosen = [np.intp(0) for _ in range(0)]
+    for vertex in range(len(start) - 1):
+        if distance[vertex] < radius:
+            continue
+        chosen.append(np.intp(vertex))
+        distance[vertex] = 0.0
+        queue = [(0.0, vertex)]
+        while queue:
+            near, i = heapq.heappop(queue)
+            if near > distance[i]:
+                continue
+            for k in range(start[i], start[i + 1]):
+                j, far = neighbour[k], near + length[k]
+                if far < distance[j]:
+                    distance[j] = far
+                    heapq.heappush(queue, (far, j))
+    return np.array(chosen)
+
+
+@njit(cache=True)
+def _joining(count, tail, head):  # type: ignore[no-untyped-def]
+    above = np.arange(count)
+    joins = np.zeros(len(tail), dtype=np.bool_)
+    for edge in range(len(tail)):
+        i, j = tail[edge], head[edge]
+        while above[i] != i:
+            above[i] = above[above[i]]
+            i = above[i]
+        while above[j] != j:
+            above[j] = above[above[j]]
+            j = above[j]
+        if i != j:
+            above[max(i, j)] = min(i, j)
+            joins[edge] = True
+    return joins
+
+
+@njit(cache=True)
+def _forest(start, neighbour, length, sources):  # type: ignore[no-untyped-def]
+    size = len(start) - 1
+    distance, owner = np.full(size, np.inf), np.full(size, -1)
+    link, parent, done = np.full(size, -1), np.full(size, -1), np.zeros(size, dtype=np.bool_)
+    order = np.empty(size, dtype=np.intp)
+    queue = [(0.0, np.intp(0)) for _ in range(0)]
+    for number, vertex in enumerate(sources):
+        if owner[vertex] < 0:
+            distance[vertex], owner[vertex] = 0.0, number
+            heapq.heappush(queue, (0.0, vertex))
+    reached = 0
+    while queue:
+        near, i = heapq.heappop(queue)
+        if done[i]:
+            continue
+        done[i] = True
+        order[reached] = i
+        reached += 1
+        for k in range(start[i], start[i + 1]):
+            j, far = neighbour[k], near + length[k]
+            if far < distance[j]:
+                distance[j], owner[j], link[j], parent[j] = far, owner[i], k, i
+                heapq.heappush(queue, (far, j))
+    return distance, owner, link, parent, order[:reached].copy()

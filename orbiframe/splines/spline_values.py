@@ -1,0 +1,105 @@
+"""Compiled values of splines: points are located and evaluated in blocks, without arrays of all points in between."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from orbiframe.splines.bernstein_kernels import fan_cell, micro_cell, micro_heights
+from orbiframe.triangulations.point_location import cell_of, walk
+
+# They make no array, so they need not count who refers to the arrays they are given.
+_bare = njit(cache=True, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
+
+
+@_bare
+def spline_values(points, grid, steps, split, nets, form, work, values):  # type: ignore[no-untyped-def]
+    """Values of functions with given Bernstein coefficients; returns the first point without a triangle, or -1.
+
+    points: patches (n,) and x (n, 3); grid and steps: see `Locator`; split: inverses and fans of the micro triangles,
+    see `fan_cell`; nets: (F m, n_d, q); form: the degree, multinomials (n_d,) and whether the last function is W, by
+    which the others are divided; work: room for the micro triangles (b,) and coordinates (b, 3) of a block, for n_d
+    factors and for powers (3, d + 1); values: (n, q), or (n, q - 1) with W. Each step is a loop of its own over a
+    block: while one point waits for memory, or for a branch that could not be foretold, the next ones are under way.
+    """
+    room = len(work[0])
+    for begin in range(0, len(values), room):
+        end = min(begin + room, len(values))
+        failed = _locate(begin, end, points, grid, steps, split, work)
+        if failed >= 0:
+            return failed
+        _evaluate(begin, end, nets, form, work, values)
+    return -1
+
+
+@_bare
+def _locate(begin, end, points, grid, steps, split, work):  # type: ignore[no-untyped-def]
+    """The micro triangles of a block of points, with the barycentric coordinates in them."""
+    patch, x = points
+    grid_face, g, half_width = grid
+    inverse, twin, across = steps
+    cell_inverse, fan, micro_count = split
+    micro, coordinates = work[0], work[1]
+    sides, cells = grid_face.shape[1], grid_face.shape[2]
+    for n in range(begin, end):
+        p, x0, x1, x2, k = patch[n], x[n, 0], x[n, 1], x[n, 2], n - begin
+        if not abs(x0) + abs(x1) + abs(x2) < np.inf:
+            return n
+        i, j = cell_of(x0, x1, x2, half_width[p], cells)
+        s = 1 if sides > 1 and x0 < 0 else 0
+        micro[k] = grid_face[p, s, i, j]
+        for row in range(3):
+            y = g[p, s, i, j, row, 0] * x0 + g[p, s, i, j, row, 1] * x1 + g[p, s, i, j, row, 2] * x2
+            coordinates[k, row] = y
+    for k in range(end - begin):
+        y0, y1, y2 = coordinates[k, 0], coordinates[k, 1], coordinates[k, 2]
+        f, y0, y1, y2, a, b, c = walk(micro[k], y0, y1, y2, inverse, twin, across)
+        if f < 0:
+            return begin + k
+        if fan.shape[1] == 0:
+            m = micro_cell(cell_inverse, f, y0, y1, y2)
+            a, b, c = micro_heights(cell_inverse, f, m, y0, y1, y2)
+            micro[k] = f * micro_count + m
+        else:
+            micro[k] = f
+        coordinates[k, 0], coordinates[k, 1], coordinates[k, 2] = a, b, c
+    if fan.shape[1] > 0:
+        for k in range(end - begin):
+            f = micro[k]
+            m, a, b, c = fan_cell(fan, f, coordinates[k, 0], coordinates[k, 1], coordinates[k, 2])
+            micro[k] = f * micro_count + m
+            coordinates[k, 0], coordinates[k, 1], coordinates[k, 2] = a, b, c
+    return -1
+
+
+@_bare
+def _evaluate(begin, end, nets, form, work, values):  # type: ignore[no-untyped-def]
+    """The values at a block of points by tabulated powers of their coordinates."""
+    degree, multinomials, rational = form
+    micro, coordinates, factors, powers = work
+    count, width = nets.shape[1], values.shape[1]
+    powers[0, 0] = powers[1, 0] = powers[2, 0] = 1.0
+    for n in range(begin, end):
+        f = micro[n - begin]
+        a, b, c = coordinates[n - begin, 0], coordinates[n - begin, 1], coordinates[n - begin, 2]
+        for k in range(degree):
+            powers[0, k + 1] = powers[0, k] * a
+            powers[1, k + 1] = powers[1, k] * b
+            powers[2, k + 1] = powers[2, k] * c
+        k = 0
+        for total in range(degree + 1):
+            for third in range(total + 1):
+                product = powers[0, degree - total] * powers[1, total - third] * powers[2, third]
+                factors[k] = multinomials[k] * product
+                k += 1
+        scale = 1.0
+        if rational:
+            weight = 0.0
+            for k in range(count):
+                weight += factors[k] * nets[f, k, width]
+            scale = 1 / weight
+        for q in range(width):
+            value = 0.0
+            for k in range(count):
+                value += factors[k] * nets[f, k, q]
+            values[n, q] = value * scale

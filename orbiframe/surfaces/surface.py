@@ -1,0 +1,163 @@
+"""OrbifoldSurface: three functions on X/H, hence one smooth surface in space (paper, section 3.4)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe.orbifolds.atlas import Points
+from orbiframe.functions.basis import Basis, DifferentiableBasis
+from orbiframe.meshes.bisection import Bisection
+from orbiframe.errors import FitError
+from orbiframe.orbifolds.orbifold import Orbifold
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.planes.quadrature import triangle_points
+from orbiframe.meshes.subdivision import refine
+from orbiframe.triangulations.triangulation import Triangulation
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+_CHUNK = 1 << 16
+
+
+class Jet(NamedTuple):
+    """A surface point with derivatives, in the orthonormal frame of X at the parameter point.
+
+    value: (n, 3); first: (n, 2, 3), S1 and S2; second: (n, 3, 3), the covariant Hessian S11, S12, S22.
+    """
+
+    value: Floats
+    first: Floats
+    second: Floats
+
+
+class Curvature(NamedTuple):
+    """Gaussian and mean curvature (n,), the unit normal (n, 3) and the area element |S1 x S2| (n,) of a surface.
+
+    The mean curvature is positive where the surface bends towards its normal.
+    """
+
+    gaussian: Floats
+    mean: Floats
+    normal: Floats
+    element: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class OrbifoldSurface:
+    """The image of X/H under three functions of a basis, placed in space.
+
+    triangulation: the map from the (refined) mesh to X/H; refinement: how that mesh refines the triangles of the
+    input; basis and coefficients (size, 3): the functions; origin (3,) and scale: a value v is the point
+    origin + scale * v, so that the coefficients belong to a mesh of unit size at the origin. basis_name and
+    basis_options: the component that made the basis, and its options, from which a saved surface makes it again.
+    """
+
+    triangulation: Triangulation
+    refinement: Bisection
+    basis: Basis
+    coefficients: Floats
+    origin: Floats
+    scale: float
+    basis_name: str = ""
+    basis_options: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def orbifold(self) -> Orbifold:
+        """The parameter domain X/H."""
+        return self.triangulation.orbifold
+
+    def points(self, face: Ints, barycentric: Floats) -> Points:
+        """The points of X/H at barycentric coordinates (n, 3) in triangles (n,) of the input mesh."""
+        return self.triangulation.locate(*self.refinement.locate(face, barycentric))
+
+    def evaluate(self, points: Points) -> Floats:
+        """The surface points (n, 3) over points of X/H."""
+        return np.asarray(self.origin + self.scale * self.basis.values(points, self.coefficients))
+
+    def jet(self, points: Points) -> Jet:
+        """Surface points with first and second derivatives. Raises FitError for a basis that has none."""
+        value, first, second = self._unit_jet(points)
+        return Jet(self.origin + self.scale * value, self.scale * first, self.scale * second)
+
+    def normals(self, points: Points) -> Floats:
+        """Unit normals S1 x S2 / |S1 x S2| (n, 3), right-handed in the frame of the patch of each point."""
+        d = self._derivatives(points, 1)
+        return _unit(np.cross(d[1], d[2]))
+
+    def curvature(self, points: Points) -> Curvature:
+        """Gaussian and mean curvature over points of X/H from the two fundamental forms.
+
+        The second form uses the covariant Hessian: what it lacks against plain second derivatives is tangential.
+        """
+        gaussian, mean, normal, element = self._unit_curvature(points)
+        s = self.scale
+        return Curvature(gaussian / s / s, mean / s, normal, element * s * s)
+
+    def total_curvature(self, order: int = 4) -> float:
+        """The integral of the Gaussian curvature over the surface: 2 pi chi by Gauss and Bonnet where it is immersed.
+
+        order: Gauss points along each direction of every triangle of the triangulation.
+        """
+        geometry, lifts = self.orbifold.geometry, self.triangulation.lifts
+        first_patch = self.triangulation.patch[self.triangulation.polyhedron.triangles[:, 0]]
+        total = 0.0
+        for start in range(0, len(lifts), max(_CHUNK // order**2, 1)):
+            part = slice(start, start + max(_CHUNK // order**2, 1))
+            x, weights = triangle_points(geometry, lifts[part], order)
+            bent = self._unit_curvature(Points(np.repeat(first_patch[part], order**2), x.reshape(-1, 3)))
+            total += float(np.abs(weights).ravel() @ (bent.gaussian * bent.element))
+        return total
+
+    def tessellate(self, density: int = 1) -> Polyhedron:
+        """A triangle mesh on the surface with normals: every triangle of the input in density^2 triangles.
+
+        Watertight and of the topology of the input: every vertex is evaluated once, and the faces are glued as those
+        of the input are. Normals point to the side from which the faces run counterclockwise.
+        """
+        mesh = refine(self.refinement.coarse, density)
+        face, barycentric = self.refinement.locate(mesh.face, mesh.barycentric)
+        points = self.triangulation.locate(face, barycentric)
+        if not isinstance(self.basis, DifferentiableBasis):
+            return mesh.polyhedron.with_vertices(self.evaluate(points))
+        d = self._derivatives(points, 1)
+        normals = _unit(np.cross(d[1], d[2])) * self.triangulation.face_signs[face, None]
+        return mesh.polyhedron.with_vertices(self.origin + self.scale * d[0], normals)
+
+    def _unit_curvature(self, points: Points) -> Curvature:
+        """The curvature of the surface before it is scaled: no square of a very large or very small number."""
+        _, slopes, bends = self._unit_jet(points)
+        first, second = slopes[:, 0], slopes[:, 1]
+        cross = np.cross(first, second)
+        element, normal = np.linalg.norm(cross, axis=1), _unit(cross)
+        e, f, g = (_dot(a, b) for a, b in ((first, first), (first, second), (second, second)))
+        bend, twist, other = (_dot(bends[:, k], normal) for k in range(3))
+        with np.errstate(all="ignore"):
+            square = element**2
+            gaussian = (bend * other - twist**2) / square
+            mean = (e * other - 2 * f * twist + g * bend) / (2 * square)
+        return Curvature(gaussian, mean, normal, element)
+
+    def _unit_jet(self, points: Points) -> Jet:
+        """The jet of the surface before it is placed in space."""
+        d = self._derivatives(points, 2)
+        return Jet(d[0], np.moveaxis(d[1:3], 0, 1), np.moveaxis(d[3:], 0, 1))
+
+    def _derivatives(self, points: Points, order: int) -> Floats:
+        if not isinstance(self.basis, DifferentiableBasis):
+            raise FitError("this basis knows no derivatives; use one that does, such as 'gaussian'")
+        return self.basis.jets(points, self.coefficients, order)
+
+
+def _dot(a: Floats, b: Floats) -> Floats:
+    return np.asarray(np.einsum("ni,ni->n", a, b))
+
+
+def _unit(vectors: Floats) -> Floats:
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.asarray(vectors / np.where(length > 0, length, 1.0))

@@ -1,0 +1,276 @@
+"""Location: in which geodesic triangle a point of X/H lies, found by walking from a table of starts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from orbiframe.orbifolds.atlas import Points
+from orbiframe.errors import FitError
+from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+_CELLS_PER_TRIANGLE = 2.0
+_LEAST_CELLS, _MOST_CELLS = 4, 512
+_MOST_STEPS = 1_000_000
+_MANY = 20_000  # from so many points on it pays to sort them by cells
+# A point this far beyond an edge, in barycentric coordinates, still counts as inside: no point goes back and forth.
+_ON_EDGE = 1e-12
+
+
+class Location(NamedTuple):
+    """Where points lie, in an order in which neighbours stand together, so that their triangles stay in the cache.
+
+    order: (n,), the numbers of the points; face: (n,), the triangle of point order[k]; columns: (n, 3, 1), the point in
+    the frame of the triangle, or (n, 3, 3), the point and its `geometry.frame`.
+    """
+
+    order: Ints
+    face: Ints
+    columns: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Locator:
+    """Finds the triangles of points of X/H: a grid on every patch gives the start, and gluings carry the point on.
+
+    Whoever walks across an edge moves the point into the next frame, so a point far from its patch is reduced on the
+    way: no fundamental domain and no group element is needed.
+    """
+
+    domain: GeodesicTriangulation
+
+    def locate(self, points: Points, *, frames: bool = False) -> Location:
+        """The triangles of points, with the points in the frames of their triangles, on request with their frames.
+
+        Raises FitError for a point that is not finite.
+        """
+        x = np.asarray(points.x, dtype=np.float64)
+        patch, order = np.asarray(points.patch, dtype=np.intp), np.arange(len(x))
+        if len(x) >= _MANY:
+            _order_by_cell(patch, x, self.grid.half_width, self.grid.face.shape, order)
+            x, patch = x[order], patch[order]
+        columns = np.array(self.domain.geometry.carry(x) if frames else x[:, :, None], order="C")
+        face = np.empty(len(x), dtype=np.intp)
+        require_found(_walk_all(patch, face, columns, self.steps, self.grid), Points(patch, x), order)
+        return Location(order, face, columns)
+
+    @cached_property
+    def steps(self) -> tuple[Floats, Ints, Floats]:
+        """What a walk needs: inverses of the corner matrices (F, 3, 3), twins (3 F,), the isometry across each edge."""
+        inverse = np.linalg.inv(np.swapaxes(self.domain.corners, 1, 2))
+        across = self.domain.gluing[self.domain.twin]
+        return np.ascontiguousarray(inverse), self.domain.twin, np.ascontiguousarray(across)
+
+    @cached_property
+    def grid(self) -> Grid:
+        """Where walks start."""
+        atlas, geometry = self.domain.orbifold.atlas, self.domain.geometry
+        share = self.domain.face_count / atlas.patch_count
+        cells = int(np.clip(np.sqrt(_CELLS_PER_TRIANGLE * share), _LEAST_CELLS, _MOST_CELLS))
+        face, isometry = self._seeds()
+        far = geometry.from_polar(atlas.radius, 0.0)
+        half_width = far[:, 1] / (1 + np.abs(far[:, 0])) if geometry.curvature <= 0 else np.ones(atlas.patch_count)
+        sides = 2 if geometry.curvature > 0 else 1
+        grid = Grid(
+            np.empty((atlas.patch_count, sides, cells, cells), dtype=np.intp),
+            np.empty((atlas.patch_count, sides, cells, cells, 3, 3)),
+            half_width,
+        )
+        _fill_grid(geometry.curvature, face, isometry, self.steps, grid.face, grid.isometry, half_width)
+        return grid
+
+    def _seeds(self) -> tuple[Ints, Floats]:
+        """A triangle for every patch and the isometry from the frame of the patch to the frame of the triangle."""
+        atlas, geometry = self.domain.orbifold.atlas, self.domain.geometry
+        face = np.full(atlas.patch_count, -1, dtype=np.intp)
+        isometry = np.tile(np.eye(3), (atlas.patch_count, 1, 1))
+        own, first = np.unique(self.domain.patch, return_index=True)
+        face[own], isometry[own] = first, geometry.inverse(self.domain.placement[first])
+        while (face < 0).any():
+            new = np.flatnonzero((face[atlas.tail] < 0) & (face[atlas.head] >= 0) & (atlas.tail >= 0))
+            patch, first = np.unique(atlas.tail[new], return_index=True)
+            step = new[first]
+            back = atlas.isometry[atlas.inverse[step]]
+            face[patch] = face[atlas.head[step]]
+            isometry[patch] = isometry[atlas.head[step]] @ back
+        return face, isometry
+
+
+class Grid(NamedTuple):
+    """Starts of walks: triangles (P, sides, n, n) and isometries (P, sides, n, n, 3, 3) from patch to triangle.
+
+    The cells divide the square of the given half width (P,) in the chart (x1, x2) / (1 + |x0|); sides: x0 > 0 and < 0.
+    """
+
+    face: Ints
+    isometry: Floats
+    half_width: Floats
+
+
+def require_found(failed: int, points: Points, order: Ints | None = None) -> None:
+    """Raise FitError for the point that a walk has found no triangle for, if there is one (failed >= 0).
+
+    order: the numbers of the points, if they are not their places.
+    """
+    if failed >= 0:
+        number = failed if order is None else order[failed]
+        raise FitError(
+            f"point {number} (patch {points.patch[failed]}, x = {points.x[failed]}) lies in no triangle of X/H; "
+            "give finite points of X, in the frame of a patch"
+        )
+
+
+@njit(cache=True)
+def _walk_one(face, columns, inverse, twin, across):  # type: ignore[no-untyped-def]
+    """Move columns (3, m), the first a point, from triangle to triangle until it is inside; the last one, or -1."""
+    width = columns.shape[1]
+    for _ in range(_MOST_STEPS):
+        worst, least, total = 0, np.inf, 0.0
+        for i in range(3):
+            height = (
+                inverse[face, i, 0] * columns[0, 0]
+                + inverse[face, i, 1] * columns[1, 0]
+                + inverse[face, i, 2] * columns[2, 0]
+            )
+            total += height
+            if height < least:
+                worst, least = i, height
+        if not np.isfinite(total):
+            return -1
+        if least >= -_ON_EDGE * abs(total):
+            return face
+        # Halfedge c lies opposite corner c + 2.
+        edge = 3 * face + (worst + 1) % 3
+        for k in range(width):
+            a, b, c = columns[0, k], columns[1, k], columns[2, k]
+            for i in range(3):
+                columns[i, k] = across[edge, i, 0] * a + across[edge, i, 1] * b + across[edge, i, 2] * c
+        face = twin[edge] // 3
+    return -1
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def cell_of(x0, x1, x2, half_width, cells):  # type: ignore[no-untyped-def]
+    """The cell of the grid, of `cells` times `cells`, in which a point of a patch lies, or the nearest one."""
+    scale = cells / (2 * half_width * (1 + abs(x0)))
+    i = min(max(int(x1 * scale + cells / 2), 0), cells - 1)
+    j = min(max(int(x2 * scale + cells / 2), 0), cells - 1)
+    return i, j
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def walk(face, x0, x1, x2, inverse, twin, across):  # type: ignore[no-untyped-def]
+    """From triangle to triangle until the point is inside: face, the point in its frame, barycentric coordinates.
+
+    The face is -1 where no triangle holds the point.
+    """
+    for _ in range(_MOST_STEPS):
+        a = inverse[face, 0, 0] * x0 + inverse[face, 0, 1] * x1 + inverse[face, 0, 2] * x2
+        b = inverse[face, 1, 0] * x0 + inverse[face, 1, 1] * x1 + inverse[face, 1, 2] * x2
+        c = inverse[face, 2, 0] * x0 + inverse[face, 2, 1] * x1 + inverse[face, 2, 2] * x2
+        total = abs(a + b + c)
+        least = min(a, min(b, c))
+        if least >= -_ON_EDGE * total:
+            return face, x0, x1, x2, a, b, c
+        if not total < np.inf:
+            break
+        # Halfedge c lies opposite corner c + 2.
+        edge = 3 * face + (1 if least == a else 2 if least == b else 0)
+        x0, x1, x2 = (
+            across[edge, 0, 0] * x0 + across[edge, 0, 1] * x1 + across[edge, 0, 2] * x2,
+            across[edge, 1, 0] * x0 + across[edge, 1, 1] * x1 + across[edge, 1, 2] * x2,
+            across[edge, 2, 0] * x0 + across[edge, 2, 1] * x1 + across[edge, 2, 2] * x2,
+        )
+        face = twin[edge] // 3
+    return -1, x0, x1, x2, 0.0, 0.0, 0.0
+
+
+@njit(cache=True)
+def _order_by_cell(patch, x, half_width, shape, order):  # type: ignore[no-untyped-def]
+    """Sort the numbers of the points by the cells of the grid, counting."""
+    sides, cells = shape[1], shape[2]
+    key = np.empty(len(patch), dtype=np.int32)
+    start = np.zeros(shape[0] * sides * cells * cells + 1, dtype=np.int64)
+    for n in range(len(patch)):
+        x0, x1, x2 = x[n, 0], x[n, 1], x[n, 2]
+        i, j = 0, 0
+        if np.isfinite(x0) and np.isfinite(x1) and np.isfinite(x2):
+            i, j = cell_of(x0, x1, x2, half_width[patch[n]], cells)
+        side = 1 if sides > 1 and x0 < 0 else 0
+        key[n] = ((patch[n] * sides + side) * cells + i) * cells + j
+        start[key[n] + 1] += 1
+    for k in range(1, len(start)):
+        start[k] += start[k - 1]
+    for n in range(len(patch)):
+        order[start[key[n]]] = n
+        start[key[n]] += 1
+
+
+@njit(cache=True)
+def _walk_all(patch, face, moved, steps, grid):  # type: ignore[no-untyped-def]
+    """Locate every point; returns the first that has no triangle, or -1."""
+    grid_face, grid_isometry, half_width = grid
+    inverse, twin, across = steps
+    cells, width = grid_face.shape[2], moved.shape[2]
+    for n in range(len(patch)):
+        p, columns = patch[n], moved[n]
+        if not (np.isfinite(columns[0, 0]) and np.isfinite(columns[1, 0]) and np.isfinite(columns[2, 0])):
+            return n
+        i, j = cell_of(columns[0, 0], columns[1, 0], columns[2, 0], half_width[p], cells)
+        side = 1 if grid_face.shape[1] > 1 and columns[0, 0] < 0 else 0
+        g = grid_isometry[p, side, i, j]
+        for k in range(width):
+            a, b, c = columns[0, k], columns[1, k], columns[2, k]
+            for row in range(3):
+                columns[row, k] = g[row, 0] * a + g[row, 1] * b + g[row, 2] * c
+        face[n] = _walk_one(grid_face[p, side, i, j], columns, inverse, twin, across)
+        if face[n] < 0:
+            return n
+    return -1
+
+
+@njit(cache=True)
+def _centre(curvature, i, j, cells, half_width):  # type: ignore[no-untyped-def]
+    """The middle of a cell as a point of X; in H^2 and E^2 not beyond the patch, in S^2 on the side x0 > 0."""
+    u = ((2 * i + 1) / cells - 1) * half_width
+    v = ((2 * j + 1) / cells - 1) * half_width
+    radius = np.sqrt(u * u + v * v)
+    if radius > half_width:
+        u, v, radius = u * half_width / radius, v * half_width / radius, half_width
+    square = curvature * radius * radius
+    if curvature == 0:
+        return 1.0, 2 * u, 2 * v
+    return (1 - square) / (1 + square), 2 * u / (1 + square), 2 * v / (1 + square)
+
+
+@njit(cache=True)
+def _fill_grid(curvature, seed, isometry, steps, grid_face, grid_isometry, half_width):  # type: ignore[no-untyped-def]
+    """The triangle at the centre of every cell: every row starts from the row before, so that no walk is long."""
+    inverse, twin, across = steps
+    cells = grid_face.shape[2]
+    columns = np.empty((3, 4))
+    for p in range(len(seed)):
+        for side in range(grid_face.shape[1]):
+            row_face, row_isometry = seed[p], isometry[p].copy()
+            for i in range(cells):
+                face, g = row_face, row_isometry.copy()
+                for j in range(cells):
+                    x0, x1, x2 = _centre(curvature, i, j, cells, half_width[p])
+                    x0 = -x0 if side else x0
+                    for row in range(3):
+                        columns[row, 0] = g[row, 0] * x0 + g[row, 1] * x1 + g[row, 2] * x2
+                        columns[row, 1:] = g[row]
+                    face = _walk_one(face, columns, inverse, twin, across)
+                    g[:] = columns[:, 1:]
+                    grid_face[p, side, i, j] = face
+                    grid_isometry[p, side, i, j] = g
+                    if j == 0:
+                        row_face, row_isometry = face, g.copy()

@@ -1,0 +1,120 @@
+"""The tessellation of X by all lifts of the faces of a polyhedron that is mapped to X/H (sections 3.3 and 3.4)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe.meshes.bisection import Bisection
+from orbiframe.meshes.face_diagonals import outline
+from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
+from orbiframe.planes.geometry import Geometry
+from orbiframe.orbifolds.orbifold import Orbifold
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.triangulations.triangulation import Triangulation
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class LiftedFaces:
+    """Faces with one number of corners, each lifted to a frame of X/H: patch (F,), corners (F, n, 3)."""
+
+    patch: Ints
+    corners: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Copies:
+    """Lifts of faces with one number of corners to one frame of X: corners (m, n, 3).
+
+    home: (m,), whether the copy is the nearest to the origin of its face: one for every face.
+    """
+
+    corners: Floats
+    home: Bools
+
+
+@dataclass(frozen=True, eq=False)
+class Tessellation:
+    """The faces of a polyhedron in X/H, lifted to the patches of their first corners, by their numbers of corners."""
+
+    orbifold: Orbifold
+    faces: tuple[LiftedFaces, ...]
+
+    @property
+    def geometry(self) -> Geometry:
+        """The plane of constant curvature that covers the surface."""
+        return self.orbifold.geometry
+
+    @property
+    def face_count(self) -> int:
+        """Number of faces of X/H."""
+        return sum(len(faces.patch) for faces in self.faces)
+
+    @property
+    def edge_count(self) -> float:
+        """Number of edges of X/H."""
+        return sum(faces.corners[..., 0].size for faces in self.faces) / 2
+
+    @cached_property
+    def edge_length(self) -> float:
+        """The median length of the sides of faces."""
+        found = [self.geometry.distance(f.corners, np.roll(f.corners, -1, axis=1)).ravel() for f in self.faces]
+        return float(np.median(np.concatenate(found)))
+
+    @classmethod
+    def of_map(cls, polyhedron: Polyhedron, refinement: Bisection, triangulation: Triangulation) -> Tessellation:
+        """The faces of a polyhedron whose triangles, refined, are mapped to X/H."""
+        atlas = triangulation.orbifold.atlas
+        steps = refinement.composed(atlas.isometry[triangulation.transition])[outline(polyhedron)]
+        faces = tuple(_lifted(polyhedron, triangulation, steps, int(size)) for size in np.unique(polyhedron.face_sizes))
+        return cls(triangulation.orbifold, faces)
+
+    @classmethod
+    def of_triangulation(cls, triangulation: GeodesicTriangulation) -> Tessellation:
+        """The triangles of X/H themselves, such as those of `delaunay`."""
+        corners = np.einsum("fij,fkj->fki", triangulation.placement, triangulation.corners)
+        return cls(triangulation.orbifold, (LiftedFaces(triangulation.patch, corners),))
+
+    def copies(self, radius: float, patch: int = 0, centre: Floats | None = None) -> Iterator[Copies]:
+        """All lifts of faces of patches whose origins lie within a radius about `centre`, in a frame with it as origin.
+
+        centre: (3,), in the frame of `patch`, by default its origin.
+        """
+        geometry = self.geometry
+        home = geometry.origin if centre is None else centre
+        away = float(geometry.distance(geometry.origin, home))
+        patches, isometry = self.orbifold.lifts(patch, radius + away)
+        isometry = geometry.inverse(geometry.carry(home)) @ isometry
+        near = geometry.distance(geometry.origin, isometry[:, :, 0]) <= radius
+        for faces in self.faces:
+            yield _copied(geometry, faces, patches[near], isometry[near])
+
+
+def _lifted(polyhedron: Polyhedron, triangulation: Triangulation, steps: Floats, size: int) -> LiftedFaces:
+    """The faces with so many corners; every corner is reached from the one before it."""
+    halfedge = polyhedron.offsets[:-1][polyhedron.face_sizes == size][:, None] + np.arange(size)
+    vertices = polyhedron.tail[halfedge]
+    frame, corners = np.tile(np.eye(3), (len(vertices), 1, 1)), []
+    for k in range(size):
+        corners.append(np.einsum("fij,fj->fi", frame, triangulation.points[vertices[:, k]]))
+        frame = frame @ steps[halfedge[:, k]]
+    return LiftedFaces(triangulation.patch[vertices[:, 0]], np.stack(corners, axis=1))
+
+
+def _copied(geometry: Geometry, faces: LiftedFaces, patches: Ints, isometry: Floats) -> Copies:
+    """The faces of every patch, moved to every copy of it."""
+    copy, face = np.nonzero(patches[:, None] == faces.patch)
+    corners = np.einsum("mij,mkj->mki", isometry[copy], faces.corners[face])
+    distance = geometry.distance(geometry.origin, geometry.project(corners.sum(axis=1)))
+    order = np.lexsort((distance, face))
+    home = np.zeros(len(face), dtype=np.bool_)
+    home[order[np.unique(face[order], return_index=True)[1]]] = True
+    return Copies(corners, home)

@@ -1,0 +1,53 @@
+"""Fits of hard meshes: what the report and the terminal say of crowding, diagonals and cells with common edges."""
+
+from __future__ import annotations
+
+import hard_surfaces as hard
+import numpy as np
+import pytest
+from fitted import REGISTRY, config
+from signed_faces import WORDS, wandering
+
+from orbiframe.fitting import pipeline
+from orbiframe.cli.report import summary
+from orbiframe.errors import TopologyError
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.testing.polyhedra import reference_polyhedra
+from orbiframe.meshes.surface_type import faces_with_repeated_vertices
+
+
+def test_a_long_finger_gets_a_warning() -> None:
+    mesh = hard.with_finger(hard.plate_cells(1, 1), (0, 0, 0), 18, 2)
+    report = pipeline.fit(mesh, config(60), REGISTRY).report
+    assert report["map"]["not_positive"] == 0
+    assert 6 <= report["map"]["crowding"]["digits_lost"] <= 9
+    assert 1e-20 < report["map"]["crowding"]["area_ratio"] < 1e-12
+    assert "of 16 digits are lost" in summary(report)
+
+
+def test_diagonals_are_told_and_a_cube_gets_no_warning() -> None:
+    report = pipeline.fit(reference_polyhedra()["prism"], config(60), REGISTRY).report
+    assert report["triangles"] == {
+        "faces_cut": 7,
+        "diagonals": 9,
+        "rule": "the shortest diagonal inside the face, again and again",
+    }
+    assert "9 diagonals in 7 faces: the shortest diagonal inside" in summary(report)
+    assert "warning" not in summary(report)
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_faces_that_meet_themselves_are_mapped_where_twins_are_given() -> None:
+    mesh = wandering(WORDS["torus"], 1, 25).polyhedron()
+    assert len(faces_with_repeated_vertices(mesh))
+    report = pipeline.fit(mesh, config(60), REGISTRY).report
+    assert report["map"]["not_positive"] == 0
+    assert report["output"]["euler_characteristic"] == 0
+
+
+def test_edges_that_a_list_of_vertices_cannot_tell_apart_are_explained() -> None:
+    """The torus of two by two squares: every two neighbours share two edges."""
+    faces = [[0, 1, 3, 2], [1, 0, 2, 3], [2, 3, 1, 0], [3, 2, 0, 1]]
+    mesh = Polyhedron.from_faces(np.eye(4, 3), faces)
+    with pytest.raises(TopologyError, match=r"several edges are meant to join the same two vertices.* put a vertex on"):
+        pipeline.fit(mesh, config(60), REGISTRY)

@@ -1,0 +1,194 @@
+"""STEP and IGES: opened again by Open CASCADE, the files hold the surface with its area, closed and outward."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from exact_surfaces import surface_of
+from fitted import config, mesh_of
+from scipy.spatial import cKDTree
+from spline_checks import quadrature
+
+from orbiframe import PeriodicPatch, Registry, patches_of
+from orbiframe.files import gate as formats
+from orbiframe.fitting import pipeline
+from orbiframe.testing import contract_tests
+
+pytest.importorskip("OCP", reason='Open CASCADE is the extra "orbiframe[cad]"')
+
+from OCP.BRep import BRep_Tool
+from OCP.BRepCheck import BRepCheck_Analyzer
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+from OCP.IGESControl import IGESControl_Reader
+from OCP.STEPControl import STEPControl_Reader
+from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
+from OCP.TopExp import TopExp_Explorer
+from OCP.TopoDS import TopoDS
+from orbiframe_exact.open_cascade import write_iges, write_step
+from orbiframe_exact.shapes import shape_of
+
+test_step = contract_tests("exporter", write_step, suffix=".step")
+test_iges = contract_tests("exporter", write_iges, suffix=".iges")
+
+WRITERS = {".step": (write_step, STEPControl_Reader), ".iges": (write_iges, IGESControl_Reader)}
+CASES = [
+    ("tetrahedron", "ps2", {}),
+    ("projective plane", "ps2", {}),
+    ("torus", "bernstein", {"degree": 3}),
+    ("Klein bottle", "ps2", {}),
+    ("double torus", "ps2", {}),
+    ("double torus", "ps3", {}),
+    ("Klein bottle", "ps6", {}),
+    ("torus", "tensor-bspline", {"degree": 3, "counts": (7, 6)}),
+    ("torus", "tensor-bspline", {"degree": 2, "knots_u": (0.1, 0.1, 0.4, 0.7, 0.8), "knots_v": (0.2, 0.4, 0.6, 0.8)}),
+    ("Klein bottle", "tensor-bspline", {"degree": 3, "counts": (6, 6)}),
+]
+each_case = pytest.mark.parametrize(("name", "family", "options"), CASES, ids=[f"{n} {f}" for n, f, _ in CASES])
+each_format = pytest.mark.parametrize("suffix", list(WRITERS))
+
+
+def reopened(surface, path):
+    write, reader = WRITERS[path.suffix]
+    write(path, surface)
+    opened = reader()
+    opened.ReadFile(str(path))
+    opened.TransferRoots()
+    return opened.OneShape()
+
+
+def area(shape) -> float:
+    found = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(shape, found, 1e-12, False)
+    return found.Mass()
+
+
+def volume(shape) -> float:
+    found = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, found, 1e-12, False, False)
+    return found.Mass()
+
+
+def faces(shape):
+    explorer = TopExp_Explorer(shape, TopAbs_FACE)
+    while explorer.More():
+        yield TopoDS.Face(explorer.Current())
+        explorer.Next()
+
+
+@each_case
+@each_format
+def test_an_opened_file_is_the_surface(name, family, options, suffix, tmp_path):
+    """The same area, closed as it should be, and on every patch a point of the surface in space."""
+    surface = surface_of(name, family, **{"size": 30, **options})
+    patches = patches_of(surface)
+    made, shape = shape_of(patches), reopened(surface, tmp_path / f"surface{suffix}")
+    assert BRepCheck_Analyzer(shape).IsValid()
+    assert area(shape) == pytest.approx(area(made), rel=1e-9)
+    if surface.orbifold.orientable:
+        assert shape.ShapeType() == TopAbs_SOLID
+        assert volume(shape) == pytest.approx(patches.quadrilaterals().volume, rel=0.1)
+        assert volume(shape) > 0
+    else:
+        assert shape.ShapeType() == TopAbs_SHELL
+        assert shape.Closed() == (family != "tensor-bspline")
+    found = np.array([np.array(BRep_Tool.Surface_s(face).Value(*at).Coord()) for face, at in _middles(shape, patches)])
+    wanted = patches.quadrilaterals().evaluate(np.array([0.5]), np.array([0.5]))[:, 0]
+    assert len(found) == len(wanted)
+    distance, place = cKDTree(wanted).query(found)
+    assert distance.max() < 1e-10
+    assert len(np.unique(place)) == len(wanted)
+
+
+def test_a_round_sphere_has_the_area_of_a_sphere(tmp_path):
+    """That of the spline by its own derivatives, without patches; near to that of the sphere."""
+    surface = surface_of("tetrahedron", "ps4", size=120)
+    round_one = replace(surface, coefficients=_coordinates(surface), origin=np.zeros(3), scale=2.0)
+    found = area(reopened(round_one, tmp_path / "ball.step"))
+    points, weights = quadrature(round_one.basis, 24)
+    assert found == pytest.approx(weights @ round_one.curvature(points).element, rel=1e-9)
+    assert found == pytest.approx(16 * np.pi, rel=1e-2)
+
+
+def _coordinates(surface) -> np.ndarray:
+    """The coefficients of the coordinate functions of S^2 by least squares on the vertices of the map."""
+    triangulation = surface.triangulation
+    face = np.arange(triangulation.polyhedron.face_count)
+    inside = np.random.default_rng(6).dirichlet([1, 1, 1], size=len(face))
+    points = triangulation.locate(face, inside)
+    x = points.x
+    return np.linalg.lstsq(surface.basis.design_matrix(points).toarray(), x, rcond=None)[0]
+
+
+def _middles(shape, patches):
+    """Every face with parameters in the middle of each of its patches."""
+    if not isinstance(patches, PeriodicPatch):
+        yield from ((face, (0.5, 0.5)) for face in faces(shape))
+        return
+    (face,) = faces(shape)
+    surface = BRep_Tool.Surface_s(face)
+    u, v = (np.array(list(knots)) for knots in (surface.UKnots(), surface.VKnots()))
+    for s in (u[1:] + u[:-1]) / 2:
+        yield from ((face, (s, t)) for t in (v[1:] + v[:-1]) / 2)
+
+
+@cache
+def genus(number: int):
+    """A fit of a dataset of higher genus."""
+    registry = Registry.discover()
+    return pipeline.fit(mesh_of(f"plate_genus{number}.off"), config(60, "basis.name=ps2"), registry).surface
+
+
+@pytest.mark.parametrize("number", [2, 5])
+def test_plates_open_as_solids_of_the_same_area(number, tmp_path):
+    surface = genus(number)
+    shape = reopened(surface, tmp_path / "plate.step")
+    assert shape.ShapeType() == TopAbs_SOLID
+    assert area(shape) == pytest.approx(area(shape_of(patches_of(surface))), rel=1e-9)
+    assert volume(shape) > 0
+
+
+@each_format
+def test_files_name_the_program_and_nothing_of_the_place(suffix, tmp_path):
+    path = tmp_path / f"shape{suffix}"
+    WRITERS[suffix][0](path, surface_of("torus", "tensor-bspline", counts=(4, 4)))
+    text = path.read_text("ascii").replace("\n", "")
+    assert "orbiframe" in text
+    assert "1970" in text
+    assert tmp_path.name not in text
+    assert "shape." not in text
+
+
+def test_a_missing_library_names_the_command(tmp_path):
+    """In a process where Open CASCADE cannot be imported."""
+    code = """
+import sys
+class Absent:
+    def find_spec(self, name, path=None, target=None):
+        if name.split(".")[0] == "OCP":
+            raise ModuleNotFoundError(f"No module named '{name}'", name=name)
+sys.meta_path.insert(0, Absent())
+from orbiframe.cli.main import main
+sys.exit(main(["fit", "datasets/torus.off", "-o", sys.argv[1], "--basis", "ps2"]))
+"""
+    folder = mesh_of("torus.off").parents[1]
+    run = subprocess.run(
+        [sys.executable, "-c", code, str(tmp_path / "a.step")], cwd=folder, capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 1
+    assert 'pip install "orbiframe[cad]"' in run.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_exporter_is_found_by_its_suffix(tmp_path):
+    registry = Registry.discover()
+    surface = surface_of("torus", "tensor-bspline", counts=(4, 4))
+    for name in ("a.stp", "a.STEP", "a.igs"):
+        formats.export(tmp_path / name, surface, registry)
+        assert (tmp_path / name).stat().st_size > 1000
+    assert not formats.exports(tmp_path / "a.ply", registry)
