@@ -19,8 +19,10 @@ from collections.abc import Callable, Sized
 from functools import partial
 
 from orbiframe_geometries.h2 import H2
+from orbiframe_invariants.word_growth import elements_by_length
 
-from orbiframe import PolygonGroup, Word, elements_by_length, elements_within, regular_polygon
+from orbiframe import Word
+from orbiframe.groups import PolygonGroup, elements_within, regular_polygon
 
 KERNELS = ("GRC", "GR")  # the others take minutes for {8,8}, or memory that no machine has
 

@@ -1,4 +1,4 @@
-"""Reading and writing a million triangles, side by side with meshio and Open3D: `python benchmarks/formats.py`.
+"""Reading and writing a million triangles, side by side with meshio and Open3D: `python benchmarks/gate.py`.
 
 Each number is megabytes of the file for a second, the best of some runs with the file in the memory of the system and
 all code loaded; `--memory` shows instead the most memory that a reader takes, in times of the arrays of its result.
@@ -22,8 +22,8 @@ from typing import Any
 import numpy as np
 
 from orbiframe import Polyhedron
-from orbiframe.files import gate as formats
 from orbiframe.components.registry import Registry
+from orbiframe.files import gate
 
 REGISTRY = Registry.discover()
 FORMATS = {
@@ -76,7 +76,7 @@ class Trial:
 def orbiframe_actions(path: Path, mesh: Polyhedron, options: dict[str, bool]) -> tuple[Callable[[], object], ...]:
     """Read and write."""
     writer = REGISTRY.load("writer", path.suffix[1:])
-    return partial(formats.read, path, REGISTRY), partial(writer, path, mesh, **options)
+    return partial(gate.read, path, REGISTRY), partial(writer, path, mesh, **options)
 
 
 def meshio_actions(path: Path, mesh: Polyhedron, options: dict[str, bool]) -> tuple[Callable[[], object], ...]:
@@ -129,9 +129,9 @@ def memory(names: list[str], count: int) -> Iterator[list[str]]:
             suffix, options = FORMATS[name]
             path, made = Path(folder) / f"mesh.{suffix}", torus(count)
             REGISTRY.load("writer", suffix)(path, made, **options)
-            formats.read(path, REGISTRY)
+            gate.read(path, REGISTRY)
             tracemalloc.start()
-            found = formats.read(path, REGISTRY)
+            found = gate.read(path, REGISTRY)
             peak = tracemalloc.get_traced_memory()[1]
             tracemalloc.stop()
             yield [name, f"{peak / sum(getattr(found, array).nbytes for array in ARRAYS):.1f}"]

@@ -20,14 +20,14 @@ import hard_surfaces as hard
 from signed_faces import WORDS, fan, wandering
 
 from orbiframe import Polyhedron, Triangulation
+from orbiframe.components.registry import Registry
+from orbiframe.errors import OrbiframeError
 from orbiframe.fitting import pipeline
 from orbiframe.meshes.bisection import bisected, edge_length_for
-from orbiframe.triangulations.lost_digits import crowding_of
 from orbiframe.meshes.face_diagonals import triangulated
-from orbiframe.errors import OrbiframeError
 from orbiframe.meshes.subdivision import refine
-from orbiframe.components.registry import Registry
 from orbiframe.meshes.surface_type import surface_type
+from orbiframe.triangulations.lost_digits import crowding_of
 
 REGISTRY = Registry.discover()
 GENERA = (*range(21), 50, 100, 133)

@@ -40,7 +40,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import splu
 
-from orbiframe import MarkedGroup, Marking, Polyhedron, Triangulation, surface_type
+from orbiframe import Marking, Polyhedron, Triangulation, surface_type
+from orbiframe.groups import MarkedGroup
 from orbiframe.meshes.face_diagonals import triangulated
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "datasets"))

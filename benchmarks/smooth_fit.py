@@ -21,10 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import Points, Polyhedron, Registry, Samples, Triangulation
+from orbiframe.functions.samples import coordinate_samples
 from orbiframe.meshes.bisection import bisected
 from orbiframe.meshes.face_diagonals import triangulated
-from orbiframe.functions.sampling import coordinate_samples
-from orbiframe.meshes.surface_type import oriented
+from orbiframe.meshes.orientation import oriented
 
 Floats = NDArray[np.float64]
 

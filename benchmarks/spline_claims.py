@@ -9,7 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import ElementBasis, GeodesicTriangulation, Registry
+from orbiframe import Registry
+from orbiframe.splines import ElementBasis
+from orbiframe.triangulations import GeodesicTriangulation
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 

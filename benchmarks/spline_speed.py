@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CloughTocher2DInterpolator, NdBSpline
 
-from orbiframe import GeodesicTriangulation, Points, Registry, Triangulation, domain_for
+from orbiframe import Points, Registry, Triangulation
+from orbiframe.delaunay import domain_for
 from orbiframe.functions.orbit_sum import reaching_pairs
+from orbiframe.triangulations import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
 

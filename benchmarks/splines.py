@@ -25,13 +25,14 @@ from scipy.sparse.linalg import splu
 from spline_claims import show_claims
 from spline_speed import show_speed
 
-from orbiframe import Basis, Points, Registry, Triangulation, triangle_points
-from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe import Basis, Points, Registry, Triangulation
 from orbiframe.errors import OrbiframeError
 from orbiframe.files.gate import read
 from orbiframe.functions.orbit_sum import reaching_pairs
+from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe.meshes.orientation import oriented
 from orbiframe.meshes.subdivision import refine
-from orbiframe.meshes.surface_type import oriented
+from orbiframe.planes import triangle_points
 
 Floats = NDArray[np.float64]
 

@@ -18,8 +18,12 @@ KINDS = (
     "reader",
     "writer",
     "exporter",
+    "picture",
     "command",
 )
+
+# The marker of a mesh where none is named.
+DEFAULT_MARKER = "tree-cotree"
 
 hookspec = pluggy.HookspecMarker("orbiframe")
 hookimpl = pluggy.HookimplMarker("orbiframe")
@@ -31,7 +35,7 @@ class Component:
 
     kind: one of `KINDS`; name: as written in a configuration ("least-squares"); target: "package.module:object";
     summary: one line, shown by `orbiframe plugins`; extra: the pip requirement that supplies an optional dependency;
-    suffixes: file suffixes with their dot, lower case (readers, writers and exporters only); welds: whether every face
+    suffixes: file suffixes with their dot, lower case (kinds that read or make files only); welds: whether every face
     has corners of its own in the file, of which the reader joins the equal ones.
     """
 

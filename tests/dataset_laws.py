@@ -8,13 +8,14 @@ from functools import cache, cached_property, partial
 from pathlib import Path
 
 from orbiframe import Triangulation
-from orbiframe.files import gate as formats
-from orbiframe.meshes.face_diagonals import triangulated
-from orbiframe.fitting.pipeline import GEOMETRY, PARAMETRIZER
 from orbiframe.components.registry import Registry
+from orbiframe.files import gate
+from orbiframe.fitting.pipeline import GEOMETRY, PARAMETRIZER
+from orbiframe.meshes.defects import require_closed_surface
+from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe.meshes.orientation import oriented
 from orbiframe.testing.kit import Verdict, laws_of, tried
 from orbiframe.testing.lab import Lab
-from orbiframe.meshes.surface_type import oriented, require_closed_surface
 
 FOLDER = Path(__file__).parents[1] / "datasets"
 REGISTRY = Registry.discover()
@@ -47,7 +48,7 @@ class OneSurface(Lab):
 @cache
 def mapped(surface: str) -> Triangulation:
     """The map of a dataset to X/H, as coarse as its mesh is."""
-    mesh = oriented(formats.read(FOLDER / f"{surface}.off", REGISTRY))
+    mesh = oriented(gate.read(FOLDER / f"{surface}.off", REGISTRY))
     chi = require_closed_surface(mesh).euler_characteristic
     geometry = GEOMETRY[(chi > 0) - (chi < 0)]
     parametrizer = REGISTRY.load("parametrizer", PARAMETRIZER[geometry])

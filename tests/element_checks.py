@@ -8,20 +8,12 @@ from orbiframe_geometries.h2 import H2
 from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import eigsh, splu
 
-from orbiframe import (
-    Basis,
-    DifferentiableBasis,
-    ElementBasis,
-    GeodesicTriangulation,
-    Orbifold,
-    OrbitSumBasis,
-    Points,
-    PolygonGroup,
-    coefficient_count,
-    regular_polygon,
-    symmetric_power,
-)
+from orbiframe import Basis, DifferentiableBasis, Orbifold, Points
+from orbiframe.functions import OrbitSumBasis
+from orbiframe.groups import PolygonGroup, regular_polygon
+from orbiframe.splines import ElementBasis, coefficient_count, symmetric_power
 from orbiframe.splines.galerkin import mass, stiffness
+from orbiframe.triangulations import GeodesicTriangulation
 from orbiframe.words.word import Word
 
 # The first eigenvalue of the Bolza surface (Strohmaier and Uski, 2013).

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from orbiframe import Fitter, OrbifoldSurface, Points, Registry
-from orbiframe.functions.sampling import coordinate_samples
+from orbiframe.functions.samples import coordinate_samples
 from orbiframe.testing.reference import reference_surface
 
 REGISTRY = Registry.discover()

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
+from orbiframe.components.registry import Registry
 from orbiframe.fitting import pipeline
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.pipeline import Result
 from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.components.registry import Registry
 from orbiframe.testing.polyhedra import reference_polyhedra
 
 DATASETS = Path(__file__).parents[1] / "datasets"

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from orbiframe import FormatError, PluginError, Polyhedron
-from orbiframe.files import gate as formats
 from orbiframe.components.registry import Registry
+from orbiframe.files import gate
 
 TABLES = ("normals", "colors", "face_colors")
 HEADING = ("suffix", "read and written by", "triangles", "quads", "n-gons", "normals", "colours of vertices",
@@ -73,10 +73,10 @@ def _again(path: Path, mesh: Polyhedron, registry: Registry) -> Polyhedron | Non
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=".*(left out|no opacity)")
         try:
-            formats.write(path, mesh, registry)
+            gate.write(path, mesh, registry)
         except FormatError:
             return None
-        found = formats.read(path, registry)
+        found = gate.read(path, registry)
     assert np.array_equal(found.offsets, mesh.offsets)
     assert np.allclose(found.vertices[found.tail], mesh.vertices[mesh.tail], rtol=0, atol=1e-6)
     return found

@@ -9,8 +9,8 @@ from orbiframe_geometries.s2 import S2
 from orbiframe_groups.regular_polygon import regular_polygon_group
 from scipy.spatial import ConvexHull, Delaunay
 
-from orbiframe.orbifolds.atlas import Points
 from orbiframe.groups.group import Group
+from orbiframe.orbifolds.atlas import Points
 from orbiframe.words.word import Word
 
 WORDS = ("aA", "aa", "abAB", "aabb", "abaB", "abcdABCD", "abABcdCD", "aabbcc", "aabbccdd")

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe.components.registry import Registry
 from orbiframe.files.gate import read
+from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe.meshes.orientation import oriented
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.subdivision import refine
-from orbiframe.components.registry import Registry
 from orbiframe.testing.polyhedra import reference_polyhedra
-from orbiframe.meshes.surface_type import oriented
 
 DATASETS = Path(__file__).parents[1] / "datasets"
 REGISTRY = Registry.discover()

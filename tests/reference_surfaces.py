@@ -12,10 +12,10 @@ from orbiframe_geometries.h2 import H2
 from orbiframe_geometries.s2 import S2
 from scipy.spatial import cKDTree
 
-from orbiframe.orbifolds.atlas import Atlas, Points
-from orbiframe.planes.geometry import Geometry
-from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.orbifolds.atlas import Atlas, Points
+from orbiframe.orbifolds.orbifold import Orbifold
+from orbiframe.planes.geometry import Geometry
 from orbiframe.triangulations.triangulation import Triangulation
 
 OCTAGON_RADIUS = float(np.arccosh(1 / np.tan(np.pi / 8) ** 2))

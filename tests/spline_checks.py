@@ -11,16 +11,11 @@ import reference_surfaces as surfaces
 from orbiframe_geometries.e2 import E2
 from orbiframe_geometries.h2 import H2
 
-from orbiframe import (
-    ElementBasis,
-    GeodesicTriangulation,
-    Orbifold,
-    Points,
-    PolygonGroup,
-    polar,
-    regular_polygon,
-    triangle_rule,
-)
+from orbiframe import Orbifold, Points
+from orbiframe.groups import PolygonGroup, regular_polygon
+from orbiframe.planes import triangle_rule
+from orbiframe.splines import ElementBasis, polar
+from orbiframe.triangulations import GeodesicTriangulation
 from orbiframe.words.word import Word
 
 # Where edges are looked at, as shares of their length; and a step across them, as a share of the triangle.

@@ -11,13 +11,13 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-
-from orbiframe import Registry
 from orbiframe_drawing.colours import GREY, INK, line_colour, tint
 from orbiframe_drawing.file import save_picture
 from orbiframe_drawing.models import Chart
 from orbiframe_drawing.page import Page
 from orbiframe_drawing.picture import Curve, Item, Label, Picture, Shape, beside, circle
+
+from orbiframe import Registry
 
 Floats = NDArray[np.float64]
 

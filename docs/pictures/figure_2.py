@@ -11,12 +11,12 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-
-from orbiframe import Registry
 from orbiframe_drawing.colours import GREY, INK, line_colour, tint
 from orbiframe_drawing.file import save_picture
 from orbiframe_drawing.models import Solid
 from orbiframe_drawing.picture import Curve, Item, Label, Picture, Shape, circle, polyline
+
+from orbiframe import Registry
 
 Floats = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ import numpy as np
 import pyvista as pv
 
 from orbiframe import Config, Polyhedron, Registry, fit
-from orbiframe.files import gate as formats
+from orbiframe.files import gate
 
 DATASETS = Path(__file__).parents[2] / "datasets"
 VIEW = [(5, -9, 11), (0, 0, 0), (0, 0, 1)]
@@ -21,7 +21,7 @@ EDGES = {"show_edges": True, "line_width": 2, "edge_color": "#34495e"}
 def before_and_after(name: str, sizes: Sequence[int], target: Path) -> None:
     """The input polyhedron beside its smooth surfaces of so many functions."""
     registry = Registry.discover()
-    polyhedron = formats.read(DATASETS / name, registry)
+    polyhedron = gate.read(DATASETS / name, registry)
     plotter = pv.Plotter(off_screen=True, shape=(1, 1 + len(sizes)), window_size=(1500, 420), border=False)
     plotter.set_background("white", all_renderers=True)
     _show(plotter, 0, polyhedron, **EDGES)

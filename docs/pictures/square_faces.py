@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from orbiframe import Config, OrbifoldSurface, Points, Polyhedron, Registry, fit
-from orbiframe.files import gate as formats
+from orbiframe.files import gate
 from orbiframe.meshes.face_diagonals import outline
 
 Floats = NDArray[np.float64]
@@ -122,7 +122,7 @@ def make(folder: Path) -> None:
     """Both pictures."""
     matplotlib.use("agg")
     registry = Registry.discover()
-    squares = formats.read(DATASETS / "plate_genus2_coarse.off", registry)
+    squares = gate.read(DATASETS / "plate_genus2_coarse.off", registry)
     polyhedron = squares.with_vertices(squares.vertices * STRETCH)
     words = {"the map of the mesh": [], "regular faces": ["shape.method=regular-faces"]}
     made = [fit(polyhedron, Config.load(overrides=["basis.size=600", *more]), registry) for more in words.values()]

@@ -8,12 +8,12 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from orbiframe.cli.destination import require_destination, require_other_file
 from orbiframe.cli.losses import losses
 from orbiframe.cli.repairs import add_repairs, repaired
 from orbiframe.cli.streams import STREAM, choice, read, write
-from orbiframe.errors import FormatError, OrbiframeError, UsageError
 from orbiframe.components.registry import Registry
+from orbiframe.errors import FormatError, OrbiframeError, UsageError
+from orbiframe.files.destination import require_destination, require_other_file
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

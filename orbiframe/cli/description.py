@@ -18,7 +18,8 @@ def description(polyhedron: Polyhedron) -> dict[str, Any]:
     import numpy as np
 
     from orbiframe.meshes import sizes as measure
-    from orbiframe.meshes.surface_type import defects, surface_type
+    from orbiframe.meshes.defects import defects
+    from orbiframe.meshes.surface_type import surface_type
 
     surface = surface_type(polyhedron)
     lengths, valences = measure.edge_lengths(polyhedron), measure.valences(polyhedron)
@@ -62,7 +63,7 @@ def lines(described: dict[str, Any]) -> Iterator[str]:
 
 
 def _title(defect: dict[str, Any]) -> str:
-    from orbiframe.meshes.surface_type import Defect
+    from orbiframe.meshes.defects import Defect
 
     return str(Defect(**defect))
 

@@ -7,11 +7,11 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from orbiframe.cli.destination import require_destination, require_folder, require_other_file
 from orbiframe.cli.progress import Progress
 from orbiframe.cli.repairs import add_repairs, repaired, repairs_asked
 from orbiframe.cli.report import json_text, summary, write_report
 from orbiframe.components.registry import Registry
+from orbiframe.files.destination import require_destination, require_folder, require_other_file
 
 if TYPE_CHECKING:
     from orbiframe.fitting.config import Config
@@ -44,10 +44,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace, registry: Registry) -> int:
     """Fit, write what was asked for, and say what came out."""
-    from orbiframe.files import gate as formats
+    from orbiframe.files import gate
+    from orbiframe.files.surface_file import save_surface
     from orbiframe.fitting import pipeline
     from orbiframe.fitting.config import Config
-    from orbiframe.files.surface_file import save_surface
 
     config = Config.load(args.config, overrides(args))
     for path in config.plugins:
@@ -60,7 +60,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     if exact := _exact(args, config, registry):
         _export(args.output, result, registry, progress)
     else:
-        formats.write(args.output, result.output, registry)
+        gate.write(args.output, result.output, registry)
     if args.save:
         save_surface(result.surface, args.save)
     if args.report:
@@ -73,20 +73,20 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
 
 def _export(path: Path, result: Result, registry: Registry, progress: Progress) -> None:
     """Write the surface itself, which takes seconds where it has thousands of patches."""
-    from orbiframe.files import gate as formats
+    from orbiframe.files import gate
 
     progress("export", None)
     start = time.perf_counter()
-    formats.export(path, result.surface, registry)
+    gate.export(path, result.surface, registry)
     result.report["seconds"]["export"] = round(time.perf_counter() - start, 4)
     progress("export", result.report["seconds"]["export"])
 
 
 def _repaired(args: argparse.Namespace, config: Config, registry: Registry) -> Polyhedron:
-    from orbiframe.files import gate as formats
+    from orbiframe.files import gate
 
     format = None if config.mesh.open else config.mesh.name
-    mesh = formats.read(args.mesh, registry, format=format, degenerate=args.drop_degenerate)
+    mesh = gate.read(args.mesh, registry, format=format, degenerate=args.drop_degenerate)
     return repaired(mesh, args, quiet=args.quiet)
 
 
@@ -106,8 +106,8 @@ def overrides(args: argparse.Namespace) -> list[str]:
 
 def _exact(args: argparse.Namespace, config: Config, registry: Registry) -> bool:
     """Whether the surface itself is written and not a mesh on it: where the format and the functions allow it."""
-    from orbiframe.surfaces.triangle_patches import has_exact_patches
     from orbiframe.files.gate import exports
+    from orbiframe.surfaces.exact_patches import has_exact_patches
 
     return exports(args.output, registry) and has_exact_patches(registry.load("basis", config.basis.name))
 

@@ -12,8 +12,8 @@ from orbiframe.cli.description import description, lines
 from orbiframe.cli.loops import add_loops, show_loops
 from orbiframe.cli.report import plain
 from orbiframe.cli.streams import choice, read
-from orbiframe.errors import OrbiframeError, UsageError
 from orbiframe.components.registry import Registry
+from orbiframe.errors import OrbiframeError, UsageError
 
 Described = dict[str, Any]
 

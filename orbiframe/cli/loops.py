@@ -9,16 +9,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from orbiframe.cli.description import description, lines
-from orbiframe.cli.destination import require_folder, require_other_file
 from orbiframe.cli.report import plain, write_text
 from orbiframe.cli.streams import read
-from orbiframe.errors import UsageError
 from orbiframe.components.registry import Registry
+from orbiframe.errors import UsageError
+from orbiframe.files.destination import require_folder, require_other_file
+from orbiframe.plugin import DEFAULT_MARKER
 
 if TYPE_CHECKING:
     from orbiframe.meshes.polyhedron import Polyhedron
-
-MARKER = "tree-cotree"
 
 
 def add_loops(parser: argparse.ArgumentParser) -> None:
@@ -52,12 +51,13 @@ def marked(mesh: Polyhedron, registry: Registry) -> dict[str, Any]:
     """
     import numpy as np
 
+    from orbiframe.meshes.defects import require_closed_surface
+    from orbiframe.meshes.surface_type import without_unused_vertices
     from orbiframe.words.presentation import Presentation
-    from orbiframe.meshes.surface_type import require_closed_surface, without_unused_vertices
 
     require_closed_surface(mesh)
     used = np.unique(mesh.tail)
-    marking = registry.load("marker", MARKER)(without_unused_vertices(mesh))
+    marking = registry.load("marker", DEFAULT_MARKER)(without_unused_vertices(mesh))
     group = Presentation.of(marking.word)
     return {
         "word": str(marking.word),

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from importlib.metadata import version
 
 from orbiframe.cli import plugin as commands
-from orbiframe.errors import OrbiframeError, UsageError
 from orbiframe.components.registry import Registry
+from orbiframe.errors import OrbiframeError, UsageError
 
 INTERRUPTED = 130
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")

@@ -13,10 +13,6 @@ def orbiframe_components() -> list[Component]:
         Component("command", "info", "orbiframe.cli.info:configure", "name the surface of a mesh and its defects"),
         Component("command", "convert", "orbiframe.cli.convert:configure", "write a mesh in another format"),
         Component(
-            "command", "group", "orbiframe_invariants.group_command:configure", "describe, measure and draw a group from a word"
-        ),
-        Component("command", "draw", "orbiframe_drawing.draw_command:configure", "draw the tessellation and the surface of a mesh"),
-        Component(
             "command", "plugins", "orbiframe.cli.plugins:configure", "list the installed components or check one"
         ),
     ]

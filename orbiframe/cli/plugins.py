@@ -7,9 +7,9 @@ import json
 from collections.abc import Iterator
 from dataclasses import asdict
 
+from orbiframe.components.registry import Registry, resolve
 from orbiframe.errors import PluginError, UsageError
 from orbiframe.plugin import KINDS, Component
-from orbiframe.components.registry import Registry, resolve
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -11,8 +11,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from orbiframe.errors import FormatError, PluginError, UsageError
 from orbiframe.components.registry import Registry
+from orbiframe.errors import FormatError, PluginError, UsageError
 
 if TYPE_CHECKING:
     from orbiframe.meshes.polyhedron import Polyhedron
@@ -53,25 +53,25 @@ def read(
     options: Mapping[str, Any] | None = None,
     degenerate: bool = False,
 ) -> Polyhedron:
-    """The polyhedron of a file, or of the standard input for `-`; see `formats.read`.
+    """The polyhedron of a file, or of the standard input for `-`; see `gate.read`.
 
     format: a name of a reader or a suffix.
     """
-    from orbiframe.files import gate as formats
+    from orbiframe.files import gate, places
 
     chosen = choice("reader", format, registry)
     given: dict[str, Any] = {"format": chosen.component, "options": options, "degenerate": degenerate}
     if path == STREAM:
         _require_named(chosen, "input", "-i")
         with _staged(f"stdin{chosen.suffix}", "stdin") as place:
-            _receive(place, formats.SIZE_LIMIT)
-            return formats.read(place, registry, **given)
+            _receive(place, places.SIZE_LIMIT)
+            return gate.read(place, registry, **given)
     if chosen.suffix in (None, path.suffix.lower()):
-        return formats.read(path, registry, **given)
-    formats.require_readable(path)
+        return gate.read(path, registry, **given)
+    places.require_readable(path)
     with _staged(f"{path.stem}{chosen.suffix}", str(path)) as place:
         place.symlink_to(path.absolute())
-        return formats.read(place, registry, **given)
+        return gate.read(place, registry, **given)
 
 
 def write(
@@ -82,24 +82,24 @@ def write(
     *,
     options: Mapping[str, Any] | None = None,
 ) -> None:
-    """Write a polyhedron to a file, or to the standard output for `-`; see `formats.write`.
+    """Write a polyhedron to a file, or to the standard output for `-`; see `gate.write`.
 
     format: a name of a writer or a suffix. What goes to the standard output is made whole first.
     """
-    from orbiframe.files import gate as formats
+    from orbiframe.files import gate, places
 
     chosen = choice("writer", format, registry)
     if path != STREAM and chosen.suffix in (None, path.suffix.lower()):
-        formats.write(path, polyhedron, registry, format=chosen.component, options=options)
+        gate.write(path, polyhedron, registry, format=chosen.component, options=options)
         return
     _require_named(chosen, "output", "-o")
     # Through a link the file behind it is written, as by any other program.
     target = STREAM if path == STREAM else Path(os.path.realpath(path))
     if path != STREAM:
-        formats.require_writable(target)
+        places.require_writable(target)
     name = "stdout" if path == STREAM else str(path)
     with _staged(f"{Path(name).stem}{chosen.suffix}", name, None if path == STREAM else target.parent) as place:
-        formats.write(place, polyhedron, registry, format=chosen.component, options=options)
+        gate.write(place, polyhedron, registry, format=chosen.component, options=options)
         _require_one_file(place, name)
         _send(place, target)
 

@@ -1,0 +1,9 @@
+"""Components: names to implementations, and what may be configured of them.
+
+Registry (`registry.py`) is the noun. Nothing here loads numpy.
+The public names are listed in `__init__.pyi`; each is imported on first use.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

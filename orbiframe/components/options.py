@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
+from orbiframe.components.suggestion import did_you_mean
 from orbiframe.errors import ConfigError
-from orbiframe.suggestion import did_you_mean
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,10 +12,11 @@ from typing import Any, TypeGuard, cast
 import pluggy
 
 from orbiframe import plugin as hooks
+from orbiframe.components.geometry_names import geometry_name
+from orbiframe.components.plugin_file import imported_file
+from orbiframe.components.suggestion import did_you_mean
 from orbiframe.errors import PluginError, UsageError
 from orbiframe.plugin import KINDS, Component
-from orbiframe.components.plugin_file import imported_file
-from orbiframe.suggestion import did_you_mean
 
 GROUP = "orbiframe"
 RESTRICTION = "ORBIFRAME_PLUGINS"
@@ -101,6 +102,10 @@ class Registry:
         where a package is missing.
         """
         return resolve(self.component(kind, name))
+
+    def geometry(self, characteristic: float) -> Any:
+        """The geometry, made now, of the closed surfaces with an Euler characteristic of this sign."""
+        return self.load("geometry", geometry_name(characteristic))()
 
     def stage_done(self, stage: str, result: object, seconds: float) -> None:
         """Tell every plugin that listens (hook `orbiframe_stage_done`) that a stage of a fit has ended."""

@@ -6,11 +6,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from orbiframe.orbifolds.atlas import Atlas
-from orbiframe.delaunay.triangle_arrays import bare, carry, copy, invert, move, multiply
 from orbiframe.delaunay.lawson_flips import chord, versine
-from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
+from orbiframe.delaunay.triangle_arrays import bare, carry, copy, invert, move, multiply
+from orbiframe.orbifolds.atlas import Atlas
 from orbiframe.orbifolds.orbifold import Orbifold
+from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

@@ -6,10 +6,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from orbiframe.delaunay.triangle_arrays import Cells, bare, copy, corner, move, multiply, recentre, split
-from orbiframe.errors import MapError
 from orbiframe.delaunay.lawson_flips import chord, legalise_star, push, versine
 from orbiframe.delaunay.point_walk import LONGEST_CHAIN, Located, by_place, walk
+from orbiframe.delaunay.triangle_arrays import Cells, bare, copy, corner, move, multiply, recentre, split
+from orbiframe.errors import MapError
 
 Ints = NDArray[np.intp]
 

@@ -8,12 +8,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from orbiframe.orbifolds.atlas import Points
+from orbiframe.delaunay.lawson_flips import turn
 from orbiframe.delaunay.triangle_arrays import Cells, bare, cells_of, copy, corner, move, multiply
 from orbiframe.errors import GeometryError
-from orbiframe.delaunay.lawson_flips import turn
-from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 from orbiframe.meshes.edge_paths import curve_order
+from orbiframe.orbifolds.atlas import Points
+from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

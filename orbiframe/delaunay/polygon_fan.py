@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.errors import GeometryError
 from orbiframe.delaunay.fresh_frames import edge_gluings
-from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
+from orbiframe.errors import GeometryError
 from orbiframe.groups.group import Group
-from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.groups.polygon_group import PolygonGroup
+from orbiframe.orbifolds.orbifold import Orbifold
+from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

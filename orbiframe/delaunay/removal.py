@@ -6,9 +6,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from orbiframe.delaunay.lawson_flips import legalise, outside, push, push_around, turn
 from orbiframe.delaunay.triangle_arrays import Cells, after, bare, before, copy, corner, flip, merge, move, multiply
 from orbiframe.errors import MapError
-from orbiframe.delaunay.lawson_flips import legalise, outside, push, push_around, turn
 
 Ints = NDArray[np.intp]
 

@@ -7,16 +7,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from orbiframe.orbifolds.atlas import Points
+from orbiframe.delaunay.fresh_frames import centred, polished
+from orbiframe.delaunay.insertion import insert
+from orbiframe.delaunay.lawson_flips import legalise, push_all
+from orbiframe.delaunay.point_walk import locate_in
+from orbiframe.delaunay.removal import remove
 from orbiframe.delaunay.triangle_arrays import Cells, cells_of
 from orbiframe.errors import MapError
-from orbiframe.delaunay.lawson_flips import legalise, push_all
-from orbiframe.delaunay.fresh_frames import centred, polished
-from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
-from orbiframe.delaunay.insertion import insert
+from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Orbifold
-from orbiframe.delaunay.removal import remove
-from orbiframe.delaunay.point_walk import locate_in
+from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 
 Ints = NDArray[np.intp]
 

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from orbiframe.orbifolds.atlas import Points
 from orbiframe.delaunay.site_triangulation import SiteTriangulation, delaunay, delaunay_of_vertices
-from orbiframe.errors import MapError
-from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
-from orbiframe.planes.quadrature import triangle_points, triangle_rule
 from orbiframe.delaunay.voronoi import circumcentres, circumradii, kites
+from orbiframe.errors import MapError
+from orbiframe.orbifolds.atlas import Points
+from orbiframe.planes.quadrature import triangle_points, triangle_rule
+from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

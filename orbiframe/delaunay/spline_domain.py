@@ -1,16 +1,19 @@
-"""The domain of splines: a triangulation of X/H of any density, chosen apart from the mesh that made the map."""
+"""Spline domain: a triangulation of X/H for a wanted number of functions."""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
 from orbiframe.delaunay.site_triangulation import delaunay_of_vertices
-from orbiframe.errors import FitError
-from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 from orbiframe.delaunay.sites import lloyd
-from orbiframe.meshes.edge_paths import edge_graph, farthest_points
-from orbiframe.triangulations.triangulation import Triangulation
 from orbiframe.delaunay.voronoi import cell_areas
+from orbiframe.errors import FitError
+from orbiframe.meshes.edge_paths import edge_graph, farthest_points
+from orbiframe.orbifolds.orbifold import Orbifold
+from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
+from orbiframe.triangulations.triangulation import Triangulation
 
 # The longest edge on the sphere: the ends of an edge of length pi have no geodesic between them.
 _LONGEST = 0.9 * np.pi
@@ -41,3 +44,35 @@ def spline_domain(triangulation: Triangulation, vertices: int, *, smoothing: int
     if found.geometry.curvature > 0 and found.edge_lengths.max() > _LONGEST:
         return spline_domain(triangulation, vertices + 1, smoothing=smoothing)
     return lloyd(found, smoothing, cell_areas(found) ** -2.0) if smoothing else found
+
+
+def domain_for(
+    orbifold: Orbifold,
+    triangulation: Triangulation | GeodesicTriangulation,
+    size: int,
+    unknowns: tuple[int, int, int],
+) -> GeodesicTriangulation:
+    """The domain for about `size` functions, so many for each vertex, edge and triangle as `unknowns` says.
+
+    A geodesic triangulation is taken as it is. From the map of a mesh a domain is made with V vertices, where V
+    follows from E = 3 (V - chi) and F = 2 (V - chi); in S^2 and H^2 with more vertices, hence functions, if need be,
+    see `fewest_vertices`. Raises FitError for a triangulation of another orbifold.
+    """
+    if triangulation.orbifold is not orbifold:
+        raise FitError("the triangulation belongs to another orbifold than the functions; pass triangulation.orbifold")
+    if isinstance(triangulation, GeodesicTriangulation):
+        return triangulation
+    at_vertex, on_edge, in_face = unknowns
+    per_vertex = at_vertex + 3 * on_edge + 2 * in_face
+    fixed = orbifold.euler_characteristic * (3 * on_edge + 2 * in_face)
+    return spline_domain(triangulation, max(round((size + fixed) / per_vertex), fewest_vertices(orbifold)))
+
+
+def fewest_vertices(orbifold: Orbifold) -> int:
+    """Of a domain whose triangles are on average as large as those of the icosahedron on S^2, pi / 5; one in E^2.
+
+    Much larger triangles would fill half a sphere, or lose digits and take long to find in H^2, where none has an area
+    of pi.
+    """
+    chi = float(orbifold.euler_characteristic)
+    return max(math.ceil(chi + 5 * abs(chi)), 1)

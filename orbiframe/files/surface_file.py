@@ -14,13 +14,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.orbifolds.atlas import Atlas
-from orbiframe.meshes.bisection import Bisection
-from orbiframe.errors import FormatError
-from orbiframe.files.gate import Components, require_readable
 from orbiframe.components.options import checked_options
-from orbiframe.orbifolds.orbifold import Orbifold
+from orbiframe.errors import FormatError
+from orbiframe.files.gate import Components
+from orbiframe.files.places import require_readable
+from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.orbifolds.atlas import Atlas
+from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.triangulations.triangulation import Triangulation
 

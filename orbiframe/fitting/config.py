@@ -13,10 +13,10 @@ from typing import Annotated, Any
 
 from annotated_types import Ge, Gt
 
-from orbiframe.errors import ConfigError, PluginError, UsageError
 from orbiframe.components.options import Option, checked_options, checked_value, options_of, place_of, require_known
 from orbiframe.components.registry import Registry
-from orbiframe.suggestion import did_you_mean
+from orbiframe.components.suggestion import did_you_mean
+from orbiframe.errors import ConfigError, PluginError, UsageError
 
 
 @dataclass(frozen=True, slots=True)

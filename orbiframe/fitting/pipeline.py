@@ -12,30 +12,30 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.files import gate as formats
-from orbiframe.meshes.bisection import Bisection, bisected, edge_length_for
-from orbiframe.fitting.config import Config
-from orbiframe.meshes.face_diagonals import triangulated
-from orbiframe.errors import FitError, MapError, TopologyError
-from orbiframe.triangulations.face_shapes import FaceShapes, face_shapes
-from orbiframe.planes.geometry import Geometry
-from orbiframe.groups.marked_group import MarkedGroup
 from orbiframe.components.options import options_of
-from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.components.registry import Registry
-from orbiframe.meshes.regular_triangles import regular_triangles
+from orbiframe.errors import FitError, MapError, TopologyError
+from orbiframe.files import gate
+from orbiframe.fitting.config import Config
 from orbiframe.fitting.report import Deviation, report
-from orbiframe.functions.samples import Samples
-from orbiframe.functions.sampling import coordinate_samples
+from orbiframe.functions.samples import Samples, coordinate_samples
+from orbiframe.groups.marked_group import MarkedGroup
+from orbiframe.meshes.bisection import Bisection, bisected, edge_length_for
+from orbiframe.meshes.defects import require_closed_surface
+from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe.meshes.orientation import oriented
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.regular_triangles import regular_triangles
+from orbiframe.meshes.surface_type import SurfaceType, without_unused_vertices
+from orbiframe.planes.geometry import Geometry
+from orbiframe.plugin import DEFAULT_MARKER
 from orbiframe.surfaces.surface import OrbifoldSurface
-from orbiframe.meshes.surface_type import SurfaceType, oriented, require_closed_surface, without_unused_vertices
+from orbiframe.triangulations.face_shapes import FaceShapes, face_shapes
 from orbiframe.triangulations.triangulation import Triangulation
 
 Progress = Callable[[str, float | None], None]
 
-GEOMETRY = {1: "s2", 0: "e2", -1: "h2"}
 PARAMETRIZER = {"s2": "sphere", "e2": "harmonic", "h2": "harmonic"}
-MARKER = "tree-cotree"
 NAMED_PARAMETRIZER = {"s2": "sphere", "e2": "equivariant", "h2": "equivariant"}
 
 _VERTICES_PER_FUNCTION = 6
@@ -188,7 +188,7 @@ class _Approximation:
 
 
 def _read(path: Path, config: Config, registry: Registry) -> Polyhedron:
-    return formats.read(path, registry, format=None if config.mesh.open else config.mesh.name)
+    return gate.read(path, registry, format=None if config.mesh.open else config.mesh.name)
 
 
 def _normalised(polyhedron: Polyhedron) -> tuple[Polyhedron, NDArray[np.float64], float]:
@@ -219,7 +219,7 @@ def _mapped(
     mesh: Polyhedron, surface_type: SurfaceType, config: Config, registry: Registry, stages: _Stages
 ) -> Triangulation:
     """The map to X/H, verified; the sign of the Euler characteristic chooses the geometry."""
-    geometry: Geometry = registry.load("geometry", GEOMETRY[int(np.sign(surface_type.euler_characteristic))])()
+    geometry: Geometry = registry.geometry(surface_type.euler_characteristic)
     group = None if config.group.open else _named_group(mesh, geometry, config, registry, stages)
     chosen = PARAMETRIZER if group is None else NAMED_PARAMETRIZER
     name = chosen[geometry.name] if config.map.open else config.map.name
@@ -239,7 +239,7 @@ def _named_group(
     mesh: Polyhedron, geometry: Geometry, config: Config, registry: Registry, stages: _Stages
 ) -> MarkedGroup:
     """The mesh cut open to a disc, and the group that the configuration names with the word of its boundary."""
-    name = MARKER if config.marking.open else config.marking.name
+    name = DEFAULT_MARKER if config.marking.open else config.marking.name
     marking = stages("marking", config.component("marking", registry, name), mesh)
     group = stages("group", config.component("group", registry), geometry, marking.word)
     return MarkedGroup(group, marking, config.group.name)

@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.fitting.config import Config
-from orbiframe.triangulations.lost_digits import crowding_of
-from orbiframe.meshes.face_diagonals import RULE
-from orbiframe.triangulations.face_shapes import FaceShapes
-from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.functions.samples import Samples
+from orbiframe.meshes.face_diagonals import RULE
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.sizes import vector_areas
+from orbiframe.meshes.surface_type import SurfaceType
 from orbiframe.surfaces.surface import OrbifoldSurface
-from orbiframe.meshes.surface_type import SurfaceType, vector_areas
+from orbiframe.triangulations.face_shapes import FaceShapes
+from orbiframe.triangulations.lost_digits import crowding_of
 from orbiframe.triangulations.triangulation import Triangulation
 
 _PACKAGES = ("orbiframe", "numpy", "scipy", "numba")

@@ -14,9 +14,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from orbiframe.meshes.edge_paths import curve_order
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Copies, Orbifold
-from orbiframe.meshes.edge_paths import curve_order
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from orbiframe.planes.geometry import Geometry
 from orbiframe.groups.group import Group
-from orbiframe.words.mirror_word import Relations
-from orbiframe.orbifolds.orbifold import Orbifold
-from orbiframe.groups.polygon_group import PolygonGroup
-from orbiframe.words.conway_symbol import Signature
-from orbiframe.groups.spherical_group import SphericalGroup
 from orbiframe.groups.mirrored_polygon import SymmetryPolygon, orbifold_cell
+from orbiframe.groups.polygon_group import PolygonGroup
+from orbiframe.groups.spherical_group import SphericalGroup
+from orbiframe.orbifolds.orbifold import Orbifold
+from orbiframe.planes.geometry import Geometry
+from orbiframe.words.conway_symbol import Signature
+from orbiframe.words.mirror_word import Relations
 
 Floats = NDArray[np.float64]
 

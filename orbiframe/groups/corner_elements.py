@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.groups.group import Group
 from orbiframe.groups.fundamental_polygon import FundamentalPolygon
+from orbiframe.groups.group import Group
 from orbiframe.planes.precise_isometry import Spin
 from orbiframe.words.word import Word
 

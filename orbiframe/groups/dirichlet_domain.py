@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError, cKDTree
 
 from orbiframe.errors import GeometryError
-from orbiframe.planes.geometry import Geometry
 from orbiframe.groups.group import Group
+from orbiframe.planes.geometry import Geometry
 from orbiframe.planes.precise_isometry import Spin
 from orbiframe.words.word import inverse_letters, reduced_letters
 

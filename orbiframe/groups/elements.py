@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from orbiframe.errors import GeometryError
 from orbiframe.groups.dirichlet_domain import DirichletCell, Generators, dirichlet_cell
 from orbiframe.groups.element_tree import DONE, MANY, ON_RIM, TIED, grow
-from orbiframe.errors import GeometryError
 from orbiframe.groups.group import Group
 from orbiframe.planes.precise_isometry import Spin
 from orbiframe.words.word import reduced_letters

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from orbiframe.components.geometry_names import geometry_name
 from orbiframe.errors import GeometryError
 from orbiframe.planes.geometry import Geometry
 from orbiframe.planes.precise_isometry import Spin
@@ -193,7 +194,7 @@ def regular_polygon(geometry: Geometry, word: Word) -> FundamentalPolygon:
             "choose the group 'finite'"
         )
     if np.sign(word.euler_characteristic) != geometry.curvature:
-        right = {1: "s2", 0: "e2", -1: "h2"}[int(np.sign(word.euler_characteristic))]
+        right = geometry_name(word.euler_characteristic)
         raise GeometryError(f"'{word}' is a {word.surface}; its geometry is {right}, not {geometry.name}")
     if len({len(cycle) for cycle in cycles}) > 1:
         counts = ", ".join(str(len(cycle)) for cycle in cycles)

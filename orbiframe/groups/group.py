@@ -7,8 +7,8 @@ from abc import ABC, abstractmethod
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from orbiframe.orbifolds.atlas import Atlas
 from orbiframe.errors import GeometryError
+from orbiframe.orbifolds.atlas import Atlas
 from orbiframe.planes.geometry import Geometry
 from orbiframe.planes.precise_isometry import Spin
 from orbiframe.words.word import Word, parse_letters

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from orbiframe.groups.corner_elements import corner_elements, products_of_pairings
 from orbiframe.errors import GeometryError
+from orbiframe.groups.corner_elements import corner_elements, products_of_pairings
 from orbiframe.groups.group import Group
 from orbiframe.groups.marking import Marking
 from orbiframe.groups.polygon_group import PolygonGroup

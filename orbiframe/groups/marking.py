@@ -11,8 +11,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order
 
 from orbiframe.errors import TopologyError
-from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.edge_paths import joining_edges
+from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.words.word import Word, inverse_letters
 
 Ints = NDArray[np.intp]

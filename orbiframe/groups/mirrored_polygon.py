@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from orbiframe.components.geometry_names import geometry_name
 from orbiframe.errors import GeometryError
-from orbiframe.planes.geometry import Geometry
-from orbiframe.words.mirror_word import MirrorWord, word_of
 from orbiframe.groups.fundamental_polygon import FundamentalPolygon
+from orbiframe.planes.geometry import Geometry
 from orbiframe.words.conway_symbol import Signature
+from orbiframe.words.mirror_word import MirrorWord, word_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -91,7 +92,7 @@ def orbifold_cell(geometry: Geometry, signature: Signature) -> SymmetryPolygon:
     Raises GeometryError for another geometry, or where the radii cannot be found to ten digits.
     """
     if signature.curvature > 0 or signature.curvature != geometry.curvature:
-        right = {1: "s2", 0: "e2", -1: "h2"}[signature.curvature]
+        right = geometry_name(signature.curvature)
         raise GeometryError(
             f"'{signature}' has the Euler characteristic {signature.euler_characteristic}, so it lives in {right}; a "
             f"polygon is wanted in {geometry.name}, where it is to be 0 (e2) or negative (h2)"

@@ -7,12 +7,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from orbiframe.orbifolds.atlas import Atlas
+from orbiframe.errors import GeometryError
 from orbiframe.groups.dirichlet_domain import DirichletCell, dirichlet_cell
 from orbiframe.groups.elements import cell_elements
-from orbiframe.errors import GeometryError
-from orbiframe.groups.group import Group
 from orbiframe.groups.fundamental_polygon import FundamentalPolygon
+from orbiframe.groups.group import Group
+from orbiframe.orbifolds.atlas import Atlas
 from orbiframe.planes.precise_isometry import Spin
 
 Floats = NDArray[np.float64]

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
-from orbiframe.orbifolds.atlas import Atlas
 from orbiframe.errors import GeometryError
-from orbiframe.planes.geometry import Geometry
 from orbiframe.groups.group import Group
-from orbiframe.words.mirror_word import MirrorWord, Relations, word_of
+from orbiframe.orbifolds.atlas import Atlas
+from orbiframe.planes.geometry import Geometry
 from orbiframe.words.conway_symbol import Signature
+from orbiframe.words.mirror_word import MirrorWord, Relations, word_of
 
 Floats = NDArray[np.float64]
 

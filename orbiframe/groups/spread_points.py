@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.orbifolds.atlas import Points
 from orbiframe.errors import GeometryError
 from orbiframe.groups.group import Group
+from orbiframe.orbifolds.atlas import Points
 
 Floats = NDArray[np.float64]
 

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from orbiframe.errors import TopologyError
 from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.meshes.surface_type import doubled_edges, vector_areas
+from orbiframe.meshes.sizes import vector_areas
+from orbiframe.meshes.surface_type import doubled_edges
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

@@ -8,8 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.meshes.orientation import reversed_faces
 from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.meshes.surface_type import faces_without_area, reversed_faces
+from orbiframe.meshes.sizes import faces_without_area
 
 Ints = NDArray[np.intp]
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from orbiframe.meshes.coincident_points import clusters, first_of_each, unit_scale
 from orbiframe.errors import TopologyError
+from orbiframe.meshes.coincident_points import clusters, first_of_each, unit_scale
 from orbiframe.meshes.polyhedron import Polyhedron
 
 Floats = NDArray[np.float64]

@@ -11,23 +11,17 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.meshes.coincident_points import clusters, first_of_each, unit_scale
-from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.errors import TopologyError, UsageError
-from orbiframe.meshes.sizes import signed_volume
-from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.coincident_points import clusters, first_of_each, unit_scale
+from orbiframe.meshes.defects import duplicate_faces, faces_with_repeated_vertices
+from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe.meshes.fans import fan_labels
 from orbiframe.meshes.flat_faces import FlatFaces, simple_loops, with_faces, without_flat_faces
 from orbiframe.meshes.open_edges import open_halfedges
-from orbiframe.meshes.surface_type import (
-    duplicate_faces,
-    face_components,
-    faces_with_repeated_vertices,
-    fan_labels,
-    oriented,
-    reversed_faces,
-    surface_type,
-    without_unused_vertices,
-)
+from orbiframe.meshes.orientation import face_components, oriented, reversed_faces
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.sizes import signed_volume
+from orbiframe.meshes.surface_type import surface_type, without_unused_vertices
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

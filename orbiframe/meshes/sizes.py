@@ -1,4 +1,4 @@
-"""Measure: area, volume, edge lengths and valences of a polyhedron, and what in them strains the arithmetic."""
+"""Sizes: areas, volume, edge lengths and valences of a polyhedron, and what a user should know of them."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.meshes.coincident_points import unit_scale
+from orbiframe.meshes.orientation import oriented
 from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.meshes.surface_type import faces_without_area, oriented, surface_type, vector_areas
+from orbiframe.meshes.surface_type import surface_type
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -110,3 +111,23 @@ def _rescaled(value: float, scale: float, power: int) -> float:
     for _ in range(power):
         value /= scale
     return value
+
+
+def vector_areas(polyhedron: Polyhedron) -> NDArray[np.float64]:
+    """The area of every face times its normal, (F, 3): half the sum of the cross products round the face."""
+    origin = polyhedron.vertices[polyhedron.tail[polyhedron.offsets[polyhedron.face]]]
+    a = polyhedron.vertices[polyhedron.tail] - origin
+    b = polyhedron.vertices[polyhedron.head] - origin
+    cross = np.cross(a, b) / 2
+    total = np.zeros((polyhedron.face_count, 3))
+    for axis in range(3):
+        total[:, axis] = np.bincount(polyhedron.face, weights=cross[:, axis], minlength=polyhedron.face_count)
+    return total
+
+
+def faces_without_area(polyhedron: Polyhedron) -> Ints:
+    """The faces whose area is nothing beside the square of the bounding box's diagonal; none where that is infinite."""
+    if not np.isfinite(polyhedron.vertices).all():
+        return np.empty(0, dtype=np.intp)
+    unit = polyhedron.with_vertices(unit_scale(polyhedron.vertices)[0])
+    return np.flatnonzero(np.linalg.norm(vector_areas(unit), axis=1) <= 1e-14 * unit.diagonal**2)

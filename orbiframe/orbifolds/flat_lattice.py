@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order
 
-from orbiframe.orbifolds.atlas import Atlas, Points
 from orbiframe.errors import GeometryError
+from orbiframe.orbifolds.atlas import Atlas, Points
 from orbiframe.orbifolds.orbifold import Orbifold
 
 Floats = NDArray[np.float64]

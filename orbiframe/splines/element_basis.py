@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from orbiframe.orbifolds.atlas import Points
 from orbiframe.functions.basis import JET_KINDS, DifferentiableBasis
+from orbiframe.functions.jet_quotient import divide_jets
+from orbiframe.orbifolds.atlas import Points
 from orbiframe.splines.bernstein import coefficient_count
 from orbiframe.splines.bernstein_kernels import evaluate_nets, fill_rows, polynomial_tables, unknowns_of_triangles
 from orbiframe.splines.galerkin import nearest_to_one
+from orbiframe.splines.spline_values import spline_values
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 from orbiframe.triangulations.point_location import Location, Locator, require_found
-from orbiframe.functions.jet_quotient import divide_jets
-from orbiframe.splines.spline_values import spline_values
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from scipy.sparse import bsr_array, csc_array, csr_array
 from scipy.sparse.linalg import splu
 
+from orbiframe.planes.quadrature import triangle_rule
 from orbiframe.splines.bernstein import bernstein_gradients, bernstein_hessians, bernstein_values, coefficient_count
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
-from orbiframe.planes.quadrature import triangle_rule
 
 Floats = NDArray[np.float64]
 

@@ -9,14 +9,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.orbifolds.atlas import Points
+from orbiframe.errors import FitError
 from orbiframe.functions.basis import Basis, DifferentiableBasis
 from orbiframe.meshes.bisection import Bisection
-from orbiframe.errors import FitError
-from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.planes.quadrature import triangle_points
 from orbiframe.meshes.subdivision import refine
+from orbiframe.orbifolds.atlas import Points
+from orbiframe.orbifolds.orbifold import Orbifold
+from orbiframe.planes.quadrature import triangle_points
 from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""Exact patches: a surface of piecewise polynomials as rational Bezier triangles, quadrilaterals, or one NURBS."""
+"""Triangle patches: a surface of piecewise polynomials as rational Bezier triangles, exactly."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from math import comb, factorial
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.errors import FitError
 from orbiframe.splines.bernstein import (
     bernstein_values,
     blossom,
@@ -20,10 +21,9 @@ from orbiframe.splines.bernstein import (
     multinomials,
 )
 from orbiframe.splines.element_basis import ElementBasis
-from orbiframe.errors import FitError
-from orbiframe.surfaces.patch_gluing import Gluing, alike, cell_gluing, periodic_grid, quartered
+from orbiframe.surfaces.patch_gluing import Gluing, alike, cell_gluing, quartered
+from orbiframe.surfaces.quadrilateral_patches import QuadrilateralPatches
 from orbiframe.surfaces.surface import OrbifoldSurface
-from orbiframe.splines.tensor_basis import TensorBasis
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -56,101 +56,6 @@ class TrianglePatches:
         weights = made[..., 3].reshape(-1, side, side)
         points = made[..., :3].reshape(-1, side, side, 3) / weights[..., None]
         return QuadrilateralPatches(points, weights, quartered(self.gluing))
-
-
-@dataclass(frozen=True, eq=False)
-class QuadrilateralPatches:
-    """Rational tensor product Bezier patches: points (N, d + 1, d + 1, 3), [patch, s, t]; weights; gluing.
-
-    Sides 0 to 3 of a patch run along s at t = 0, along t at s = 1, and back.
-    """
-
-    points: Floats
-    weights: Floats
-    gluing: Gluing
-
-    @property
-    def degree(self) -> int:
-        """The degree in either direction."""
-        return int(self.weights.shape[1]) - 1
-
-    def evaluate(self, s: Floats, t: Floats) -> Floats:
-        """The points at parameters (m,) of every patch, (N, m, 3)."""
-        a, b = (_bernstein(self.degree, x) for x in (s, t))
-        values = self.weights * (a[:, None, :, None] * b[:, None, None, :])
-        return np.asarray(np.einsum("mnst,nstk->nmk", values, self.points) / values.sum(axis=(2, 3)).T[..., None])
-
-    @property
-    def volume(self) -> float:
-        """The signed volume inside, of triangles between 8 times 8 points on each patch."""
-        basis = _bernstein(self.degree, np.linspace(0, 1, 8))
-        centred = self.points - self.points.mean(axis=(0, 1, 2))
-        homogeneous = self.weights[..., None] * np.insert(centred, 3, 1.0, axis=-1)
-        found = np.einsum("as,nstk,bt->nabk", basis, homogeneous, basis, optimize=True)
-        p = found[..., :3] / found[..., 3:]
-        a, b, c, d = p[:, :-1, :-1], p[:, 1:, :-1], p[:, 1:, 1:], p[:, :-1, 1:]
-        return float(np.sum(np.cross(b, c) * a + np.cross(c, d) * a) / 6)
-
-
-@dataclass(frozen=True, eq=False)
-class PeriodicPatch:
-    """One periodic tensor product B-spline surface: S(u, v) = sum P_ij N_i(u) N_j(v) of one degree.
-
-    knots: those of one period in u and in v, rising; N_j has the knots j, ..., j + degree + 1. points: (n_u, n_v, 3).
-    periods: 1 and 1 on a torus; 2 and 1 on a Klein bottle, where glide is true and S(u + 1, -v) = S(u, v), so that any
-    interval of length 1 of u is the whole surface. On a torus the normal S_u x S_v points outward.
-    """
-
-    degree: int
-    knots: tuple[Floats, Floats]
-    points: Floats
-    periods: tuple[float, float]
-    glide: bool
-
-    def quadrilaterals(self) -> QuadrilateralPatches:
-        """The polynomial pieces as Bezier patches of weight 1, each part of the surface once."""
-        u, v = (np.unique(knots) for knots in self.knots)
-        rows, columns = (_pieces(k, self.degree, p) for k, p in zip(self.knots, self.periods, strict=True))
-        if self.glide:
-            rows, u = rows[: len(u) // 2], u[: len(u) // 2]
-        points = np.einsum("pai,qbj,ijk->pqabk", rows, columns, self.points)
-        points = points.reshape(-1, self.degree + 1, self.degree + 1, 3)
-        mirror = (len(v) - 1 - (v[0] > 0) - np.arange(len(v))) % len(v) if self.glide else None
-        return QuadrilateralPatches(points, np.ones(points.shape[:3]), periodic_grid((len(u), len(v)), mirror))
-
-    def transposed(self) -> PeriodicPatch:
-        """The same surface with u and v exchanged, and the other side outside; not on a Klein bottle."""
-        (u, v), (p, q) = self.knots, self.periods
-        return PeriodicPatch(self.degree, (v, u), np.swapaxes(self.points, 0, 1), (q, p), self.glide)
-
-
-def has_exact_patches(basis: object) -> bool:
-    """Whether a component makes functions with exact patches."""
-    return isinstance(basis, type) and issubclass(basis, ElementBasis | TensorBasis)
-
-
-def patches_of(surface: OrbifoldSurface) -> TrianglePatches | PeriodicPatch:
-    """The exact patches of a surface of piecewise polynomials: triangles, or one periodic patch of a tensor product.
-
-    Raises FitError for other functions, polynomials of odd degree that are not divided by W, and where a weight is not
-    positive.
-    """
-    if isinstance(surface.basis, TensorBasis):
-        return periodic_patch(surface, surface.basis)
-    if isinstance(surface.basis, ElementBasis):
-        return triangle_patches(surface, surface.basis)
-    raise FitError(
-        f"the functions of '{surface.basis_name or type(surface.basis).__name__}' are neither polynomials on triangles "
-        "nor tensor products, so the surface has no exact patches; choose --basis ps2 or ps6, or write a mesh"
-    )
-
-
-def periodic_patch(surface: OrbifoldSurface, basis: TensorBasis) -> PeriodicPatch:
-    """The periodic patch of a tensor product on a torus or Klein bottle."""
-    points = surface.scale * basis.net(surface.coefficients) + surface.origin
-    glide = basis.lattice.glide
-    patch = PeriodicPatch(basis.degree, basis.knots, points, (2.0 if glide else 1.0, 1.0), glide)
-    return patch if glide or patch.quadrilaterals().volume > 0 else patch.transposed()
 
 
 def triangle_patches(surface: OrbifoldSurface, basis: ElementBasis) -> TrianglePatches:
@@ -252,31 +157,3 @@ def _quadrilateral_forms(degree: int) -> Floats:
                 arguments = [place for place, n in zip(places, counts, strict=True) for _ in range(n)]
                 forms[c, a, b] += share / (comb(degree, a) * comb(degree, b)) * blossom(unit, arguments)
     return forms.reshape(3, -1, len(unit))
-
-
-def _bernstein(degree: int, x: Floats) -> Floats:
-    """The Bernstein polynomials of one variable at (m,) parameters, (m, degree + 1)."""
-    k = np.arange(degree + 1)
-    binomial = np.array([float(comb(degree, i)) for i in k])
-    return np.asarray(binomial * x[:, None] ** k * (1 - x[:, None]) ** (degree - k))
-
-
-def _pieces(knots: Floats, degree: int, period: float) -> Floats:
-    """The Bezier points of the pieces between knots from the control points of a period: (pieces, degree + 1, n).
-
-    Point k of the piece on [a, b] is the blossom with k arguments b and degree - k arguments a (de Boor's algorithm).
-    """
-    count = len(knots)
-    place = np.arange(-degree, 2 * count + degree + 1)
-    line = knots[place % count] + period * (place // count)
-    span = degree + np.flatnonzero(np.diff(line[degree : degree + count + 1]) > 0)
-    ends = line[span], line[span + 1]
-    forms = np.zeros((len(span), degree + 1, count))
-    for k in range(degree + 1):
-        table = np.eye(count)[(span[:, None] - 2 * degree + np.arange(degree + 1)) % count]
-        for r in range(degree):
-            j = span[:, None] - degree + np.arange(r + 1, degree + 1)
-            share = (ends[int(r < k)][:, None] - line[j]) / (line[j + degree - r] - line[j])
-            table = (1 - share[..., None]) * table[:, :-1] + share[..., None] * table[:, 1:]
-        forms[:, k] = table[:, 0]
-    return forms

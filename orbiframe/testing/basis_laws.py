@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array, diags_array
 
-from orbiframe.orbifolds.atlas import Points
-from orbiframe.functions.basis import Basis, DifferentiableBasis
 from orbiframe.errors import GeometryError
+from orbiframe.functions.basis import Basis, DifferentiableBasis
+from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.testing.lab import Lab
 from orbiframe.triangulations.triangulation import Triangulation

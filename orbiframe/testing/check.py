@@ -9,8 +9,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from orbiframe.components.options import options_of
-from orbiframe.plugin import Component
 from orbiframe.components.registry import Registry, resolve
+from orbiframe.plugin import Component
 from orbiframe.testing import component_laws
 from orbiframe.testing.kit import Verdict, bound, has_laws, laws_of, tried
 from orbiframe.testing.lab import Lab
@@ -30,7 +30,7 @@ def check(component: Component, registry: Registry) -> list[Verdict]:
 
 
 def equipments(component: Component, registry: Registry) -> Iterator[dict[str, Any]]:
-    """What a lab for a component needs, once for every suffix of a reader, writer or exporter.
+    """What a lab for a component needs, once for every suffix of those that read or make files.
 
     A basis that can be of any size is tried small, as the reference triangulations are.
     """
@@ -38,7 +38,7 @@ def equipments(component: Component, registry: Registry) -> Iterator[dict[str, A
         sized = component.kind == "basis" and any(option.name == "size" for option in options_of(resolve(component)))
         yield {"params": {"size": SMALL}} if sized else {}
     for suffix in component.suffixes:
-        other = None if component.kind == "exporter" else counterpart(component, suffix, registry)
+        other = counterpart(component, suffix, registry) if component.kind in ("reader", "writer") else None
         yield {"suffix": suffix, "counterpart": other}
 
 

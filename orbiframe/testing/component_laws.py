@@ -6,8 +6,8 @@ import inspect
 from collections.abc import Callable
 from typing import Any
 
-from orbiframe.plugin import Component
 from orbiframe.components.registry import resolve
+from orbiframe.plugin import Component
 
 # Positional arguments that the pipeline hands over; keyword-only arguments come from the configuration.
 POSITIONAL = {
@@ -21,6 +21,7 @@ POSITIONAL = {
     "reader": 1,
     "writer": 2,
     "exporter": 2,
+    "picture": 2,
     "command": 1,
 }
 
@@ -61,8 +62,8 @@ def summary_is_one_line(component: Component) -> None:
 
 
 def suffixes_are_written_alike(component: Component) -> None:
-    """Readers, writers and exporters name suffixes with a dot in lower case; other kinds name none."""
-    if component.kind in ("reader", "writer", "exporter"):
+    """Kinds that read or make files name suffixes with a dot in lower case; other kinds name none."""
+    if component.kind in ("reader", "writer", "exporter", "picture"):
         assert component.suffixes, f"a {component.kind} names its file suffixes"
     else:
         assert not component.suffixes, f"a {component.kind} has no file suffixes"

@@ -8,10 +8,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.orbifolds.atlas import Points
-from orbiframe.functions.basis import Basis, OrbitSumBasis
+from orbiframe.functions.basis import Basis
 from orbiframe.functions.fitter import Fitter
+from orbiframe.functions.orbit_sum_basis import OrbitSumBasis
 from orbiframe.functions.samples import Samples
+from orbiframe.orbifolds.atlas import Points
 from orbiframe.testing.lab import Lab
 from orbiframe.triangulations.triangulation import Triangulation
 

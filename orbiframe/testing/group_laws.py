@@ -9,12 +9,12 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from orbiframe.orbifolds.atlas import Atlas
-from orbiframe.groups.elements import elements_within
-from orbiframe.errors import GeometryError
-from orbiframe.planes.geometry import Geometry
-from orbiframe.groups.group import Group
 from orbiframe.components.registry import Registry
+from orbiframe.errors import GeometryError
+from orbiframe.groups.elements import elements_within
+from orbiframe.groups.group import Group
+from orbiframe.orbifolds.atlas import Atlas
+from orbiframe.planes.geometry import Geometry
 from orbiframe.testing.lab import Lab
 from orbiframe.words.word import Word
 

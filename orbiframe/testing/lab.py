@@ -14,6 +14,7 @@ from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.testing.polyhedra import reference_polyhedra
 
 if TYPE_CHECKING:
+    from orbiframe.groups.group import Group
     from orbiframe.orbifolds.orbifold import Orbifold
     from orbiframe.surfaces.surface import OrbifoldSurface
     from orbiframe.triangulations.triangulation import Triangulation
@@ -24,8 +25,8 @@ class Lab:
     """A fresh folder, random numbers that repeat, and reference objects.
 
     tmp_path: an empty folder; params: the options that are bound to the component under test; suffix: the file
-    suffix to try (readers, writers and exporters); counterpart: the writer for a reader, the reader for a writer, None
-    where there is none.
+    suffix to try (of kinds that read or make files); counterpart: the writer for a reader, the reader for a writer,
+    None where there is none.
     """
 
     tmp_path: Path
@@ -59,6 +60,13 @@ class Lab:
     def surfaces(self) -> Mapping[str, OrbifoldSurface]:
         """Small surfaces of Powell-Sabin splines of degree 2, which have exact patches, on these triangulations."""
         return {name: self.surface(name, "ps2") for name in self.triangulations}
+
+    @cached_property
+    def groups(self) -> Mapping[str, Group]:
+        """Small groups with a fundamental polygon by name: flat and hyperbolic ones, one of them nonorientable."""
+        from orbiframe.testing.reference import reference_groups
+
+        return reference_groups()
 
     def surface(self, name: str, basis: str) -> OrbifoldSurface:
         """A small surface on one of the triangulations, of the functions of an installed basis."""

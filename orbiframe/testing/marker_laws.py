@@ -12,21 +12,21 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from orbiframe.groups.corner_elements import corner_elements
-from orbiframe.planes.geometry import Geometry
-from orbiframe.groups.marking import Marking
-from orbiframe.groups.fundamental_polygon import regular_polygon
-from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.components.geometry_names import geometry_name
 from orbiframe.components.registry import Registry
+from orbiframe.groups.corner_elements import corner_elements
+from orbiframe.groups.fundamental_polygon import regular_polygon
+from orbiframe.groups.marking import Marking
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.surface_type import surface_type
+from orbiframe.planes.geometry import Geometry
 from orbiframe.planes.precise_isometry import Spin
 from orbiframe.testing.lab import Lab
-from orbiframe.meshes.surface_type import surface_type
 from orbiframe.words.word import Word
 
 Component = Callable[[Polyhedron], Marking]
 Ints = NDArray[np.intp]
 
-_GEOMETRY = {0: "e2", -1: "h2"}
 _TOLERANCE = 1e-9
 
 
@@ -122,7 +122,7 @@ def _elements(marking: Marking) -> Spin:
     word = marking.word
     if len(word) == 2:
         return Spin.rotation(1, np.zeros(2), np.array([False, True]))
-    return corner_elements(regular_polygon(_geometry(_GEOMETRY[int(np.sign(word.euler_characteristic))]), word))
+    return corner_elements(regular_polygon(_geometry(geometry_name(word.euler_characteristic)), word))
 
 
 @cache

@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.planes.geometry import Geometry
+from orbiframe.components.registry import Registry
 from orbiframe.groups.marked_group import MarkedGroup
 from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.components.registry import Registry
+from orbiframe.planes.geometry import Geometry
 from orbiframe.testing import parametrizer_laws as maps
 from orbiframe.testing.lab import Lab
 from orbiframe.triangulations.triangulation import Triangulation

@@ -10,24 +10,24 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.orbifolds.atlas import Atlas
-from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe.components.geometry_names import geometry_name
+from orbiframe.components.registry import Registry
 from orbiframe.errors import MapError
-from orbiframe.planes.geometry import Geometry
 from orbiframe.groups.marked_group import MarkedGroup
-from orbiframe.orbifolds.orbifold import Orbifold
+from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.subdivision import refine
-from orbiframe.components.registry import Registry
-from orbiframe.testing.lab import Lab
 from orbiframe.meshes.surface_type import surface_type
+from orbiframe.orbifolds.atlas import Atlas
+from orbiframe.orbifolds.orbifold import Orbifold
+from orbiframe.planes.geometry import Geometry
+from orbiframe.testing.lab import Lab
 from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
 Component = Callable[[Polyhedron, Geometry, MarkedGroup | None], Triangulation]
 
 DENSITY = 3
-_GEOMETRY = {1: "s2", 0: "e2", -1: "h2"}
 
 
 def transitions_form_a_cocycle(component: Component, lab: Lab) -> None:
@@ -199,7 +199,7 @@ def _cases(component: Component, lab: Lab) -> Iterator[_Case]:
     taken, refusals = 0, []
     for name, polyhedron in lab.polyhedra.items():
         mesh = refine(triangulated(polyhedron), DENSITY).polyhedron
-        geometry = _geometry(_GEOMETRY[int(np.sign(surface_type(mesh).euler_characteristic))])
+        geometry = _geometry(geometry_name(surface_type(mesh).euler_characteristic))
         for make in (_no_group, _regular_group):
             group = make(mesh, geometry)
             try:

@@ -8,16 +8,18 @@ from types import MappingProxyType
 
 import numpy as np
 
+from orbiframe.components.registry import Registry
 from orbiframe.functions.basis import Basis
+from orbiframe.functions.fitter import Fitter
+from orbiframe.functions.samples import coordinate_samples
+from orbiframe.groups.group import Group
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.face_diagonals import triangulated
-from orbiframe.functions.fitter import Fitter
 from orbiframe.meshes.subdivision import refine
-from orbiframe.components.registry import Registry
-from orbiframe.functions.sampling import coordinate_samples
 from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.testing.polyhedra import reference_polyhedra
 from orbiframe.triangulations.triangulation import Triangulation
+from orbiframe.words.word import Word
 
 # Geometry and parametrizer for the sign of the Euler characteristic of each polyhedron, and how fine it becomes.
 RECIPES = {
@@ -27,6 +29,20 @@ RECIPES = {
     "Klein bottle": ("e2", "harmonic", 2),
     "double torus": ("h2", "harmonic", 2),
 }
+
+
+@cache
+def reference_groups() -> Mapping[str, Group]:
+    """Small groups by name, made by installed components: a torus, a Klein bottle, a genus 2, three crosscaps."""
+    registry = Registry.discover(only=["geometries", "groups"])
+    words = {"torus": "abAB", "Klein bottle": "aabb", "double torus": "abABcdCD", "three crosscaps": "aabbcc"}
+    return MappingProxyType({name: _group(Word.parse(text), registry) for name, text in words.items()})
+
+
+def _group(word: Word, registry: Registry) -> Group:
+    name = "regular-polygon" if word.euler_characteristic < 0 else "lattice"
+    group: Group = registry.load("group", name)(registry.geometry(word.euler_characteristic), word)
+    return group
 
 
 @cache

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.face_diagonals import outline
-from orbiframe.planes.geometry import Geometry
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.planes.geometry import Geometry
 from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]

@@ -11,8 +11,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from orbiframe.errors import MapError
-from orbiframe.planes.geometry import Geometry
 from orbiframe.orbifolds.orbifold import Orbifold
+from orbiframe.planes.geometry import Geometry
 from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]

@@ -10,8 +10,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from orbiframe.orbifolds.atlas import Points
 from orbiframe.errors import FitError
+from orbiframe.orbifolds.atlas import Points
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 
 Floats = NDArray[np.float64]

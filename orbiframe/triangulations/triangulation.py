@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from orbiframe.orbifolds.atlas import Points
 from orbiframe.errors import MapError
-from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.orbifolds.atlas import Points
+from orbiframe.orbifolds.orbifold import Orbifold
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

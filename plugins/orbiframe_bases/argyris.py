@@ -8,18 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from orbiframe import (
-    ElementBasis,
-    GeodesicTriangulation,
-    Orbifold,
-    Triangulation,
-    Unknowns,
-    UsageError,
-    VertexJets,
-    along_reference,
-    domain_for,
-    shaped_triangles,
-)
+from orbiframe import Orbifold, Triangulation, UsageError
+from orbiframe.delaunay import domain_for
+from orbiframe.splines import ElementBasis, Unknowns, VertexJets, along_reference, shaped_triangles
+from orbiframe.triangulations import GeodesicTriangulation
 from orbiframe_bases.hermite import neighbours, normal_coordinates
 from orbiframe_bases.unsplit import Corners, unknown_counts, unsplit_nets
 

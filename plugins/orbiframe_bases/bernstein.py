@@ -6,16 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from orbiframe import (
-    ElementBasis,
-    GeodesicTriangulation,
-    Orbifold,
-    Triangulation,
-    UsageError,
-    along_reference,
-    domain_for,
-    exponents,
-)
+from orbiframe import Orbifold, Triangulation, UsageError
+from orbiframe.delaunay import domain_for
+from orbiframe.splines import ElementBasis, along_reference, exponents
+from orbiframe.triangulations import GeodesicTriangulation
 
 Ints = NDArray[np.intp]
 

@@ -5,16 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import (
-    FitError,
-    Geometry,
-    Spacing,
-    Triangulation,
-    UsageError,
-    dijkstra_forest,
-    edge_graph,
-    farthest_points,
-)
+from orbiframe import FitError, Geometry, Triangulation, UsageError
+from orbiframe.meshes import Spacing, dijkstra_forest, edge_graph, farthest_points
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

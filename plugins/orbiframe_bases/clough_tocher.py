@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import ElementBasis, GeodesicTriangulation, Orbifold, Triangulation, domain_for
+from orbiframe import Orbifold, Triangulation
+from orbiframe.delaunay import domain_for
+from orbiframe.splines import ElementBasis
+from orbiframe.triangulations import GeodesicTriangulation
 from orbiframe_bases.hermite import CubicHermite
 
 Floats = NDArray[np.float64]

@@ -7,15 +7,10 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import (
-    FitError,
-    GeodesicTriangulation,
-    Orbifold,
-    Triangulation,
-    UsageError,
-    domain_for,
-    exponents,
-)
+from orbiframe import FitError, Orbifold, Triangulation, UsageError
+from orbiframe.delaunay import domain_for
+from orbiframe.splines import exponents
+from orbiframe.triangulations import GeodesicTriangulation
 from orbiframe_bases.bernstein import shared_numbers
 from orbiframe_bases.knot_clouds import flatness, knot_clouds
 from orbiframe_bases.simplex_program import cloud_program

@@ -7,7 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import Orbifold, OrbitSumBasis, Points, Triangulation
+from orbiframe import Orbifold, Points, Triangulation
+from orbiframe.functions import OrbitSumBasis
 from orbiframe_bases.centres import require_positive, spread, supports
 
 Floats = NDArray[np.float64]

@@ -7,7 +7,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import GeodesicTriangulation, Unknowns, VertexJets, shaped_triangles, shared_normals
+from orbiframe.splines import Unknowns, VertexJets, shaped_triangles, shared_normals
+from orbiframe.triangulations import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
 

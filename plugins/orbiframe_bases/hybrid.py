@@ -8,18 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from orbiframe import (
-    DifferentiableBasis,
-    ElementBasis,
-    GeodesicTriangulation,
-    Orbifold,
-    Points,
-    Triangulation,
-    coefficient_count,
-    divide_jets,
-    domain_for,
-    exponents,
-)
+from orbiframe import DifferentiableBasis, Orbifold, Points, Triangulation
+from orbiframe.delaunay import domain_for
+from orbiframe.functions import divide_jets
+from orbiframe.splines import ElementBasis, coefficient_count, exponents
+from orbiframe.triangulations import GeodesicTriangulation
 from orbiframe_bases.hermite import CubicHermite
 
 Floats = NDArray[np.float64]

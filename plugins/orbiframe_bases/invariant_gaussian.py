@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from orbiframe import OrbitSumBasis, SphericalGroup, SymmetryGroup, orbifold_of, sites_of_cell
+from orbiframe.functions import OrbitSumBasis
+from orbiframe.groups import SphericalGroup, SymmetryGroup, orbifold_of, sites_of_cell
 from orbiframe_bases.centres import require_positive
 from orbiframe_bases.gaussian import Gaussian
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import GeodesicTriangulation
+from orbiframe.triangulations import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
 

@@ -8,20 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from orbiframe import (
+from orbiframe import Orbifold, Triangulation
+from orbiframe.delaunay import domain_for
+from orbiframe.splines import (
     ElementBasis,
-    GeodesicTriangulation,
-    Orbifold,
     PowellSabinSplit,
-    Triangulation,
     Unknowns,
     VertexJets,
     coefficient_count,
-    domain_for,
     edge_normals,
     enclosing_triangles,
     shaped_triangles,
 )
+from orbiframe.triangulations import GeodesicTriangulation
 from orbiframe_bases.powell_sabin_nets import Pieces, powell_sabin_nets
 
 Floats = NDArray[np.float64]

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import coefficient_count, exponents, polar
+from orbiframe.splines import coefficient_count, exponents, polar
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from orbiframe import GeodesicTriangulation, Orbifold, Triangulation, UsageError, domain_for
+from orbiframe import Orbifold, Triangulation, UsageError
+from orbiframe.delaunay import domain_for
+from orbiframe.triangulations import GeodesicTriangulation
 from orbiframe_bases.ear_clipping import clip_ears
 from orbiframe_bases.knot_clouds import flatness, knot_clouds
 from orbiframe_bases.simplex_program import subset_program

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import FitError, GeodesicTriangulation, Locator, Points
+from orbiframe import FitError, Points
+from orbiframe.triangulations import GeodesicTriangulation, Locator
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

@@ -12,15 +12,10 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import lsmr
 
-from orbiframe import (
-    DifferentiableBasis,
-    FitError,
-    GeodesicTriangulation,
-    Locator,
-    Points,
-    divide_jets,
-    triangle_rule,
-)
+from orbiframe import DifferentiableBasis, FitError, Points
+from orbiframe.functions import divide_jets
+from orbiframe.planes import triangle_rule
+from orbiframe.triangulations import GeodesicTriangulation, Locator
 from orbiframe_bases import simplex_kernels as kernels
 from orbiframe_bases.simplex_program import Program
 from orbiframe_bases.simplex_reach import Reach, hull_bounds, reach

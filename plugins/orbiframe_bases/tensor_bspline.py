@@ -9,16 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from orbiframe import (
-    FlatLattice,
-    GeodesicTriangulation,
-    GeometryError,
-    Orbifold,
-    Points,
-    TensorBasis,
-    Triangulation,
-    UsageError,
-)
+from orbiframe import GeometryError, Orbifold, Points, Triangulation, UsageError
+from orbiframe.orbifolds import FlatLattice
+from orbiframe.splines import TensorBasis
+from orbiframe.triangulations import GeodesicTriangulation
 from orbiframe_bases.periodic_bsplines import PeriodicBSplines
 
 Floats = NDArray[np.float64]

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import Unknowns, coefficient_count, exponents
+from orbiframe.splines import Unknowns, coefficient_count, exponents
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import Orbifold, OrbitSumBasis, Points, Triangulation, UsageError
+from orbiframe import Orbifold, Points, Triangulation, UsageError
+from orbiframe.functions import OrbitSumBasis
 from orbiframe_bases.centres import require_positive, spread, supports
 
 Floats = NDArray[np.float64]

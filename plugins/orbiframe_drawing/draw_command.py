@@ -6,20 +6,17 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from orbiframe.cli.destination import require_folder, require_other_file
-from orbiframe.cli.loops import MARKER
-from orbiframe.errors import FormatError, UsageError
-from orbiframe.components.registry import Registry
+from orbiframe import FormatError, Registry, UsageError
+from orbiframe.files import require_folder, require_other_file
+from orbiframe.plugin import DEFAULT_MARKER
 
 if TYPE_CHECKING:
+    from orbiframe import OrbifoldSurface, Polyhedron
     from orbiframe_drawing.picture import Picture
-    from orbiframe.meshes.polyhedron import Polyhedron
-    from orbiframe.surfaces.surface import OrbifoldSurface
 
 SURFACE = ".npz"
 # Functions of a fit of which only the map is drawn.
 _FEW = "basis.size=100"
-_GEOMETRY = {1: "s2", 0: "e2", -1: "h2"}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -77,10 +74,8 @@ class _Made(NamedTuple):
 
 
 def _made(args: argparse.Namespace, registry: Registry) -> _Made:
-    from orbiframe.fitting import pipeline
-    from orbiframe.fitting.config import Config
-    from orbiframe.files.surface_file import load_surface
-    from orbiframe.meshes.surface_type import oriented
+    from orbiframe import Config, fit, load_surface
+    from orbiframe.meshes import oriented
 
     if args.mesh.suffix.lower() == SURFACE:
         if args.group or args.config or args.set:
@@ -93,14 +88,14 @@ def _made(args: argparse.Namespace, registry: Registry) -> _Made:
     for path in config.plugins:
         registry.add_file(path)
     polyhedron = oriented(_read(args, registry))
-    return _Made(pipeline.fit(polyhedron, config, registry).surface, polyhedron)
+    return _Made(fit(polyhedron, config, registry).surface, polyhedron)
 
 
 def _read(args: argparse.Namespace, registry: Registry) -> Polyhedron:
-    from orbiframe.files import gate as formats
-    from orbiframe.meshes.surface_type import without_unused_vertices
+    from orbiframe import read
+    from orbiframe.meshes import without_unused_vertices
 
-    return without_unused_vertices(formats.read(args.mesh, registry))
+    return without_unused_vertices(read(args.mesh, registry))
 
 
 def _middle(vertex: int | None, surface: OrbifoldSurface) -> tuple[int, Any]:
@@ -114,15 +109,14 @@ def _middle(vertex: int | None, surface: OrbifoldSurface) -> tuple[int, Any]:
 
 
 def _cut(args: argparse.Namespace, view: Any, registry: Registry) -> Picture:
+    from orbiframe.meshes import require_closed_surface
     from orbiframe_drawing.solid_picture import cut_picture
-    from orbiframe.meshes.surface_type import require_closed_surface
 
     if args.mesh.suffix.lower() == SURFACE:
         raise FormatError(f"{args.mesh}: loops are drawn on a mesh; give the mesh that the surface was made of")
     mesh = _read(args, registry)
     surface = require_closed_surface(mesh)
-    sign = (surface.euler_characteristic > 0) - (surface.euler_characteristic < 0)
-    marking = registry.load("marker", MARKER)(mesh)
+    marking = registry.load("marker", DEFAULT_MARKER)(mesh)
     name = args.group or "regular-polygon"
-    group = registry.load("group", name)(registry.load("geometry", _GEOMETRY[sign])(), marking.word)
+    group = registry.load("group", name)(registry.geometry(surface.euler_characteristic), marking.word)
     return cut_picture(marking, group, view=view)

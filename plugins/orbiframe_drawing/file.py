@@ -7,10 +7,10 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
+from orbiframe import FormatError, UsageError
 from orbiframe_drawing.picture import Picture
 from orbiframe_drawing.plot import pdf_bytes, png_bytes
 from orbiframe_drawing.svg import svg_text
-from orbiframe.errors import FormatError, UsageError
 
 _FORMATS: dict[str, Callable[[Picture], bytes]] = {
     ".svg": lambda picture: svg_text(picture).encode("utf-8"),

@@ -7,8 +7,6 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.orbifolds.atlas import Points
-from orbiframe.functions.basis import Basis
 from orbiframe_drawing.colours import channels, diverging
 from orbiframe_drawing.picture import Raster
 
@@ -22,15 +20,6 @@ _BANDS = 8  # of one colour each, on either side of 0
 _ZERO = np.array(channels("#1a1a1a"))
 # Farther out all periods are smaller than a pixel, and group elements lose their digits: cosh 7.6.
 _FARTHEST = 1000.0
-
-
-def lifted(basis: Basis, coefficients: Floats) -> Function:
-    """A function on X/H, of coefficients (size, 1), as an invariant function on X in the frame of patch 0."""
-
-    def values(x: Floats) -> Floats:
-        return basis.values(Points(np.zeros(len(x), dtype=np.intp), x), coefficients)[:, 0]
-
-    return values
 
 
 def function_image(function: Function, points: Callable[[Floats], Floats], half: float) -> Raster:

@@ -6,22 +6,20 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe_drawing.polygon import Cell, cell_of
+from orbiframe import Group, UsageError
+from orbiframe.words import text_of
 from orbiframe_drawing.colours import GREY, INK, PAPER, line_colour, mixed, tint
 from orbiframe_drawing.file import require_picture_file, save_picture
 from orbiframe_drawing.function_image import Function, function_image
 from orbiframe_drawing.models import Chart, Model, Solid, model_of
 from orbiframe_drawing.page import WIDTH, Page
 from orbiframe_drawing.picture import Curve, Item, Label, Picture, Shape, arrowhead, chained, circle
+from orbiframe_drawing.polygon import Cell, cell_of
 from orbiframe_drawing.tiles import Tiles, nearest_tiles, tiles_within
-from orbiframe.errors import UsageError
-from orbiframe.groups.group import Group
-from orbiframe.words.word import text_of
 
 Floats = NDArray[np.float64]
 
@@ -38,10 +36,27 @@ _RIM = 1.3
 _MOTIF_LEAST = 9.0  # points; smaller tiles show no motif
 
 
-def draw_group(group: Group, path: str | Path, **options: Any) -> None:
-    """Write the picture of a group to a .svg, .png or .pdf file; the options are those of `group_picture`."""
+def draw_group(
+    path: str | Path,
+    group: Group,
+    *,
+    model: str | None = None,
+    radius: float | None = None,
+    tiles: int | None = None,
+    motif: bool | None = None,
+    function: Function | None = None,
+    points: Floats | None = None,
+) -> None:
+    """Write the picture of a group to a .svg, .png or .pdf file; for the options see `group_picture`.
+
+    model, radius or tiles, motif, function, points: what is drawn. Raises UsageError for another suffix, FormatError
+    for a file that cannot be written.
+    """
     require_picture_file(Path(path))
-    save_picture(group_picture(group, **options), path)
+    picture = group_picture(
+        group, model=model, radius=radius, tiles=tiles, motif=motif, function=function, points=points
+    )
+    save_picture(picture, path)
 
 
 def group_picture(

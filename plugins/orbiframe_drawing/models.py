@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from orbiframe import Geometry, UsageError
 from orbiframe_drawing.picture import Curve, circle
-from orbiframe.errors import UsageError
-from orbiframe.planes.geometry import Geometry
 
 Floats = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe import PluginError
 from orbiframe_drawing.picture import Curve, Item, Label, Picture, Shape
-from orbiframe.errors import PluginError
 
 Floats = NDArray[np.float64]
 

@@ -9,10 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.errors import GeometryError
-from orbiframe.planes.geometry import Geometry
-from orbiframe.groups.group import Group
-from orbiframe.groups.polygon_group import PolygonGroup
+from orbiframe import Geometry, GeometryError, Group
+from orbiframe.groups import PolygonGroup
 
 Floats = NDArray[np.float64]
 

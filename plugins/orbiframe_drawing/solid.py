@@ -10,10 +10,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe import Polyhedron
+from orbiframe.meshes import triangulated
 from orbiframe_drawing.colours import channels
 from orbiframe_drawing.picture import Curve, Raster, polyline
-from orbiframe.meshes.polyhedron import Polyhedron
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.meshes.face_diagonals import outline
+from orbiframe import Group, Marking, OrbifoldSurface, Polyhedron
+from orbiframe.meshes import outline
+from orbiframe.words import text_of
 from orbiframe_drawing.colours import INK, line_colour
 from orbiframe_drawing.group_picture import group_picture
 from orbiframe_drawing.page import MARGIN
@@ -13,11 +15,6 @@ from orbiframe_drawing.picture import Item, Label, Picture, Shape, beside
 from orbiframe_drawing.solid import VIEW, Solid3D
 from orbiframe_drawing.tessellation import Tessellation
 from orbiframe_drawing.tessellation_picture import tessellation_picture
-from orbiframe.groups.group import Group
-from orbiframe.groups.marking import Marking
-from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.surfaces.surface import OrbifoldSurface
-from orbiframe.words.word import text_of
 
 Floats = NDArray[np.float64]
 View = tuple[float, float, float]

@@ -9,13 +9,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.meshes.bisection import Bisection
-from orbiframe.meshes.face_diagonals import outline
-from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
-from orbiframe.planes.geometry import Geometry
-from orbiframe.orbifolds.orbifold import Orbifold
-from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.triangulations.triangulation import Triangulation
+from orbiframe import Geometry, Orbifold, Polyhedron, Triangulation
+from orbiframe.meshes import Bisection, outline
+from orbiframe.triangulations import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

@@ -9,13 +9,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe import UsageError
 from orbiframe_drawing.colours import GREY, INK, line_colour, tint
 from orbiframe_drawing.models import Model, model_of
 from orbiframe_drawing.page import WIDTH, Page
 from orbiframe_drawing.picture import Item, Picture, Shape, chained
 from orbiframe_drawing.tessellation import Copies, Tessellation
 from orbiframe_drawing.tiles import disc_area
-from orbiframe.errors import UsageError
 
 Floats = NDArray[np.float64]
 

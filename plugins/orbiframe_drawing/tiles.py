@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from orbiframe import Group, UsageError
 from orbiframe_drawing.polygon import Cell
-from orbiframe.errors import UsageError
-from orbiframe.groups.group import Group
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

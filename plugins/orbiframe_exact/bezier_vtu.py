@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import OrbifoldSurface, PeriodicPatch, patches_of
+from orbiframe import OrbifoldSurface
+from orbiframe.surfaces import PeriodicPatch, patches_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

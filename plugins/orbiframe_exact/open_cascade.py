@@ -18,7 +18,8 @@ from OCP.StepBasic import StepBasic_Product
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
 from OCP.TCollection import TCollection_HAsciiString
 
-from orbiframe import FitError, OrbifoldSurface, PeriodicPatch, __version__, patches_of
+from orbiframe import FitError, OrbifoldSurface, __version__
+from orbiframe.surfaces import PeriodicPatch, patches_of
 from orbiframe_exact.shapes import shape_of
 
 # Files have no time of day and no path, so that one surface always gives the same bytes.

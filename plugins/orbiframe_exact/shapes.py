@@ -17,7 +17,7 @@ from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shell, TopoDS_Solid, TopoDS_Vertex, TopoDS_Wire
 
-from orbiframe import PeriodicPatch, QuadrilateralPatches, TrianglePatches
+from orbiframe.surfaces import PeriodicPatch, QuadrilateralPatches, TrianglePatches
 
 Floats = NDArray[np.float64]
 

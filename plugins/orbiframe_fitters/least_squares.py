@@ -11,7 +11,8 @@ from scipy.sparse import csc_array, csr_array, diags_array, eye_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 from scipy.sparse.linalg import splu
 
-from orbiframe import Basis, DifferentiableBasis, FitError, Fitter, Samples, UsageError, curve_order
+from orbiframe import Basis, DifferentiableBasis, FitError, Fitter, Samples, UsageError
+from orbiframe.meshes import curve_order
 from orbiframe_fitters.gram import add_gram
 
 Floats = NDArray[np.float64]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from orbiframe import FundamentalPolygon, Geometry, GeometryError, Group, PolygonGroup, Word
+from orbiframe import FundamentalPolygon, Geometry, GeometryError, Group, Word
+from orbiframe.groups import PolygonGroup
 
 
 def lattice_group(

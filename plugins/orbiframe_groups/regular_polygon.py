@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from orbiframe import Geometry, Group, PolygonGroup, Word, regular_polygon
+from orbiframe import Geometry, Group, Word
+from orbiframe.groups import PolygonGroup, regular_polygon
 from orbiframe_groups.finite import FiniteGroup
 
 

@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
-from orbiframe.words.word import Word, inverse_letters, reduced_letters
+from orbiframe import Word
+from orbiframe.words import inverse_letters, reduced_letters
 
 Letters = tuple[int, ...]
 Change = dict[int, Letters]

@@ -10,11 +10,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from orbiframe.groups.dirichlet_domain import DirichletCell, dirichlet_cell
-from orbiframe.groups.elements import Elements, cell_elements
-from orbiframe.errors import GeometryError
-from orbiframe.groups.group import Group
-from orbiframe.planes.precise_isometry import Spin
+from orbiframe import GeometryError, Group
+from orbiframe.groups import DirichletCell, Elements, cell_elements, dirichlet_cell
+from orbiframe.planes import Spin
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

@@ -14,8 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from orbiframe.errors import GeometryError
-from orbiframe.words.word import Word
+from orbiframe import GeometryError, Word
 
 # Coefficients of a polynomial in zeta of degree below 2 l: Python integers, which never overflow; zeta^(2 l) = -1.
 Polynomial = Any

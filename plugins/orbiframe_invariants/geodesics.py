@@ -7,13 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from orbiframe.orbifolds.atlas import Points
+from orbiframe import Geometry, GeometryError, Group, Orbifold, Points
+from orbiframe.orbifolds import Copies
+from orbiframe.planes import Spin
 from orbiframe_invariants.closed_geodesics import axes, translation_lengths
-from orbiframe.errors import GeometryError
-from orbiframe.planes.geometry import Geometry
-from orbiframe.groups.group import Group
-from orbiframe.orbifolds.orbifold import Copies, Orbifold
-from orbiframe.planes.precise_isometry import Spin
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

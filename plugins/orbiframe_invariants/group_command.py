@@ -7,14 +7,12 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from orbiframe.cli.destination import require_folder
+from orbiframe import Registry, UsageError
+from orbiframe.files import require_picture
 from orbiframe_invariants.symbol_description import describe_symbol, is_symbol, symbol_group, symbol_rows
-from orbiframe.errors import UsageError
-from orbiframe.components.registry import Registry
 
 if TYPE_CHECKING:
-    from orbiframe.groups.group import Group
-    from orbiframe.words.word import Word
+    from orbiframe import Group, Word
 
 # The shape of a surface of each sign of the Euler characteristic that is meant by "regular".
 _REGULAR = {1: "finite", 0: "lattice", -1: "regular-polygon"}
@@ -22,7 +20,7 @@ _WORD_HELP = (
     "how the sides of a polygon are glued, such as abABcdCD, capitals being inverses; or bolza or klein-quartic; or "
     "Conway's symbol of an orbifold, such as *237, 4*2 or xx"
 )
-_GEOMETRY = {1: "s2", 0: "e2", -1: "h2"}
+PICTURE = "group"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -49,7 +47,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
 
     if args.spectrum is not None and args.spectrum < 1:
         raise UsageError(f"--spectrum {args.spectrum}: ask for at least 1 eigenvalue")
-    _require_picture(args)
+    _require_picture(args, registry)
     if is_symbol(args.word):
         orbifold = symbol_group(args, registry)
         found = describe_symbol(orbifold, args.word) | _computed(args, orbifold, registry)
@@ -64,13 +62,10 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     return 0
 
 
-def _require_picture(args: argparse.Namespace) -> None:
+def _require_picture(args: argparse.Namespace, registry: Registry) -> None:
     """Raise UsageError for options of a picture without its file, or a file that is none."""
-    from orbiframe_drawing.file import require_picture_file
-
     if args.draw is not None:
-        require_folder(args.draw)
-        require_picture_file(args.draw)
+        require_picture(args.draw, PICTURE, registry)
         return
     for name in ("model", "tiles", "radius", "function"):
         if getattr(args, name) is not None:
@@ -92,14 +87,13 @@ def _proof(word: Word, polygon: str) -> dict[str, Any]:
 def _group(word: Word, polygon: str, registry: Registry) -> Group:
     sign = (word.euler_characteristic > 0) - (word.euler_characteristic < 0)
     name = _REGULAR[sign] if polygon == "regular" else polygon
-    group: Group = registry.load("group", name)(registry.load("geometry", _GEOMETRY[sign])(), word)
+    group: Group = registry.load("group", name)(registry.geometry(sign), word)
     return group
 
 
 def _described(word: Word) -> dict[str, Any]:
     """What a word says without numbers."""
-    from orbiframe.words.presentation import Presentation
-    from orbiframe.words.word import text_of
+    from orbiframe.words import Presentation, text_of
 
     deficit = 2 - word.euler_characteristic
     one_vertex = len(word.vertex_cycles) == 1
@@ -120,8 +114,8 @@ def _described(word: Word) -> dict[str, Any]:
 
 def _reduced(word: Word) -> dict[str, Any]:
     """The standard word, its letters in those of the given word, and those of the given word in its letters."""
+    from orbiframe.words import text_of
     from orbiframe_invariants.canonical_word import canonical_form
-    from orbiframe.words.word import text_of
 
     reduced = canonical_form(word)
     changes = {"letters": reduced.new_in_old, "given": reduced.old_in_new}
@@ -140,7 +134,7 @@ def _computed(args: argparse.Namespace, group: Group, registry: Registry) -> dic
         shortest = systole(group)
         found["systole"] = {"length": shortest.length, "multiplicity": shortest.multiplicity}
     if args.spectrum:
-        from orbiframe.delaunay.polygon_fan import cell_triangulation
+        from orbiframe.delaunay import cell_triangulation
         from orbiframe_invariants.laplace_spectrum import laplace_spectrum
 
         values = laplace_spectrum(cell_triangulation(group), _polynomials(registry), args.spectrum)
@@ -155,19 +149,18 @@ def _computed(args: argparse.Namespace, group: Group, registry: Registry) -> dic
 
 def _draw(args: argparse.Namespace, group: Group, registry: Registry, about: dict[str, Any]) -> None:
     """Write the picture, and say which eigenvalue its function has."""
-    from orbiframe_drawing.group_picture import draw_group
-
     function = None
     if args.function is not None:
-        from orbiframe.delaunay.polygon_fan import cell_triangulation
-        from orbiframe_drawing.function_image import lifted
+        from orbiframe.delaunay import cell_triangulation
+        from orbiframe.functions import lifted
         from orbiframe_invariants.laplace_spectrum import eigenfunction
 
         space, coefficients, about["eigenvalue"] = eigenfunction(
             cell_triangulation(group), _polynomials(registry), args.function
         )
         function = lifted(space, coefficients)
-    draw_group(group, args.draw, model=args.model, radius=args.radius, tiles=args.tiles, function=function)
+    draw_group = registry.load("picture", PICTURE)
+    draw_group(args.draw, group, model=args.model, radius=args.radius, tiles=args.tiles, function=function)
 
 
 def _polynomials(registry: Registry) -> Any:

@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
-from orbiframe.splines.element_basis import ElementBasis
-from orbiframe.errors import FitError
-from orbiframe.splines.galerkin import mass, stiffness
-from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
+from orbiframe import FitError
+from orbiframe.splines import ElementBasis, mass, stiffness
+from orbiframe.triangulations import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from orbiframe.errors import TopologyError
-from orbiframe.suggestion import did_you_mean
-from orbiframe.words.word import Word
+from orbiframe import TopologyError, Word
+from orbiframe.components import did_you_mean
 
 
 def opposite_sides(size: int) -> Word:

@@ -6,15 +6,11 @@ import argparse
 import re
 from typing import TYPE_CHECKING, Any
 
-from orbiframe.errors import UsageError
-from orbiframe.components.registry import Registry
+from orbiframe import Registry, UsageError
 
 if TYPE_CHECKING:
-    from orbiframe.words.conway_symbol import Signature
-    from orbiframe.groups.spherical_group import SphericalGroup
-    from orbiframe.groups.conway_group import SymmetryGroup
-
-_GEOMETRY = {1: "s2", 0: "e2", -1: "h2"}
+    from orbiframe.groups import SphericalGroup, SymmetryGroup
+    from orbiframe.words import Signature
 
 
 def is_symbol(text: str) -> bool:
@@ -24,18 +20,17 @@ def is_symbol(text: str) -> bool:
 
 def symbol_group(args: argparse.Namespace, registry: Registry) -> SymmetryGroup | SphericalGroup:
     """The group of the orbifold of a symbol."""
-    from orbiframe.words.conway_symbol import Signature
-    from orbiframe.groups.conway_group import orbifold_group
+    from orbiframe.groups import orbifold_group
+    from orbiframe.words import Signature
 
     signature = Signature.parse(args.word)
     _require_supported(args, signature)
-    return orbifold_group(registry.load("geometry", _GEOMETRY[signature.curvature])(), signature)
+    return orbifold_group(registry.geometry(signature.curvature), signature)
 
 
 def describe_symbol(group: SymmetryGroup | SphericalGroup, text: str) -> dict[str, Any]:
     """The orbifold of a symbol, its group and its cell."""
-    from orbiframe.words.conway_symbol import Signature
-    from orbiframe.words.word import text_of
+    from orbiframe.words import Signature, text_of
 
     signature = Signature.parse(text)
     return {

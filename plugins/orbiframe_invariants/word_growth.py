@@ -6,12 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from orbiframe.groups.dirichlet_domain import Generators, lettered_pairings
-from orbiframe.groups.elements import Elements, grown_elements
-from orbiframe.errors import GeometryError
-from orbiframe.groups.fundamental_polygon import FundamentalPolygon
-from orbiframe.groups.polygon_group import PolygonGroup
-from orbiframe.planes.precise_isometry import Spin
+from orbiframe import FundamentalPolygon, GeometryError
+from orbiframe.groups import Elements, Generators, PolygonGroup, grown_elements, lettered_pairings
+from orbiframe.planes import Spin
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

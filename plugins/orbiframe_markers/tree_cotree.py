@@ -8,16 +8,9 @@ import numpy as np
 from annotated_types import Ge
 from numpy.typing import NDArray
 
-from orbiframe import (
-    Graph,
-    Marking,
-    Polyhedron,
-    dijkstra_forest,
-    edge_graph,
-    farthest_points,
-    joining_edges,
-    marking_along,
-)
+from orbiframe import Marking, Polyhedron
+from orbiframe.groups import marking_along
+from orbiframe.meshes import Graph, dijkstra_forest, edge_graph, farthest_points, joining_edges
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

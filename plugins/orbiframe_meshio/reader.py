@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from orbiframe import Polyhedron, confined_read
+from orbiframe import Polyhedron
+from orbiframe.files import confined_read
 
 
 def read(path: Path, *, seconds: float = 60.0) -> Polyhedron:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import warnings
 from pathlib import Path
 
-from orbiframe import Polyhedron, confined_write
+from orbiframe import Polyhedron
+from orbiframe.files import confined_write
 
 
 def write(path: Path, polyhedron: Polyhedron, *, seconds: float = 60.0) -> None:

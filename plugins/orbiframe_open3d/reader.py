@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from orbiframe import Polyhedron, confined_read
+from orbiframe import Polyhedron
+from orbiframe.files import confined_read
 
 # Open3D is loaded inside the limit and takes address space for its threads.
 MEMORY = 2**33

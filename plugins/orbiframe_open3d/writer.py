@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from orbiframe import FormatError, Polyhedron, confined_write
+from orbiframe import FormatError, Polyhedron
+from orbiframe.files import confined_write
 
 # Open3D is loaded inside the limit and takes address space for its threads.
 MEMORY = 2**33

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from orbiframe import Polyhedron, Triangulation, crowding_of, doubled_edges
+from orbiframe import Polyhedron, Triangulation
+from orbiframe.meshes import doubled_edges
+from orbiframe.triangulations import crowding_of
 
 _CROWDED = 9.0
 

@@ -8,18 +8,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from orbiframe import (
-    Atlas,
-    Geometry,
-    MapError,
-    Orbifold,
-    Polyhedron,
-    SurfaceType,
-    Triangulation,
-    covering_points,
-    dijkstra_forest,
-    edge_graph,
-)
+from orbiframe import Atlas, Geometry, MapError, Orbifold, Polyhedron, SurfaceType, Triangulation
+from orbiframe.meshes import covering_points, dijkstra_forest, edge_graph
 from orbiframe_parametrizers.relations import with_relations
 
 Floats = NDArray[np.float64]

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import Polyhedron, fan_labels, reversed_faces
+from orbiframe import Polyhedron
+from orbiframe.meshes import fan_labels, reversed_faces
 
 Ints = NDArray[np.intp]
 

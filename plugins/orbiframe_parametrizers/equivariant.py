@@ -9,18 +9,9 @@ import numpy as np
 from annotated_types import Ge
 from numpy.typing import NDArray
 
-from orbiframe import (
-    Atlas,
-    Geometry,
-    MapError,
-    MarkedGroup,
-    Orbifold,
-    Polyhedron,
-    Spin,
-    SurfaceType,
-    Triangulation,
-    surface_type,
-)
+from orbiframe import Atlas, Geometry, MapError, Orbifold, Polyhedron, SurfaceType, Triangulation, surface_type
+from orbiframe.groups import MarkedGroup
+from orbiframe.planes import Spin
 from orbiframe_parametrizers.developing import in_patches, on_both_halfedges
 from orbiframe_parametrizers.edge_weights import WEIGHTS
 from orbiframe_parametrizers.embedding import embedded

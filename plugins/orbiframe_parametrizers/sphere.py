@@ -8,7 +8,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import Atlas, Geometry, MapError, MarkedGroup, Orbifold, Polyhedron, Triangulation, surface_type
+from orbiframe import Atlas, Geometry, MapError, Orbifold, Polyhedron, Triangulation, surface_type
+from orbiframe.groups import MarkedGroup
 from orbiframe_parametrizers.advice import advice
 from orbiframe_parametrizers.circle_packing import packed
 from orbiframe_parametrizers.double_cover import DoubleCover, double_cover

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from orbiframe import surface_type
+from orbiframe.meshes.defects import defects
 from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.meshes.surface_type import defects
 
 FOLDER = Path(__file__).parents[2] / "datasets"
 INDEX = tomllib.loads((FOLDER / "index.toml").read_text())

@@ -11,8 +11,10 @@ from orbiframe_bases.powell_sabin import PowellSabin2, PowellSabin3, PowellSabin
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import eigsh, spsolve
 
-from orbiframe import ElementBasis, GeodesicTriangulation, Points
+from orbiframe import Points
+from orbiframe.splines import ElementBasis
 from orbiframe.splines.galerkin import mass, stiffness
+from orbiframe.triangulations import GeodesicTriangulation
 
 # Strohmaier and Uski, "An algorithm for the computation of eigenvalues, spectral zeta functions and
 # zeta-determinants on hyperbolic surfaces", 2013.

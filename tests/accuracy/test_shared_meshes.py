@@ -8,11 +8,13 @@ from pathlib import Path
 import pytest
 from fitted import REGISTRY, config
 
-from orbiframe.files import gate as formats
-from orbiframe.fitting import pipeline
-from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.errors import TopologyError
-from orbiframe.meshes.surface_type import oriented, require_closed_surface, surface_type, without_unused_vertices
+from orbiframe.files import gate
+from orbiframe.fitting import pipeline
+from orbiframe.meshes.defects import require_closed_surface
+from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe.meshes.orientation import oriented
+from orbiframe.meshes.surface_type import surface_type, without_unused_vertices
 
 FOLDER = Path(__file__).parents[2].parent / "shared" / "meshes"
 pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="there is no folder shared/meshes beside the repository")
@@ -83,7 +85,7 @@ def test_a_closed_mesh_gives_a_surface_of_its_kind(name: str) -> None:
 
 @pytest.mark.parametrize("name", MAP_ONLY)
 def test_a_large_or_slender_mesh_is_mapped_as_it_is(name: str) -> None:
-    mesh = formats.read(FOLDER / name, REGISTRY)
+    mesh = gate.read(FOLDER / name, REGISTRY)
     kind = require_closed_surface(mesh)
     assert (kind.euler_characteristic, kind.orientable) == MAP_ONLY[name]
     triangles = oriented(triangulated(without_unused_vertices(mesh)))

@@ -13,10 +13,10 @@ from orbiframe_geometries.s2 import S2
 from orbiframe_groups.finite import FiniteGroup
 from orbiframe_groups.lattice import lattice_group
 from orbiframe_groups.regular_polygon import regular_polygon_group
+from orbiframe_invariants.laplace_spectrum import laplace_spectrum
 
 from orbiframe.delaunay.polygon_fan import cell_triangulation
 from orbiframe.errors import FitError
-from orbiframe_invariants.laplace_spectrum import laplace_spectrum
 from orbiframe.words.word import Word
 
 PI2 = np.pi**2

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from orbiframe.files import gate as formats
 from orbiframe.components.registry import Registry
+from orbiframe.files import gate, places
 
 REGISTRY = Registry.discover()
 
@@ -16,7 +16,7 @@ REGISTRY = Registry.discover()
 @pytest.fixture
 def coloured(cube):
     """A cube with normals, colours of vertices and colours of faces."""
-    mesh = formats.read(cube, REGISTRY)
+    mesh = gate.read(cube, REGISTRY)
     full = replace(
         mesh,
         normals=mesh.vertices - 0.5,
@@ -24,7 +24,7 @@ def coloured(cube):
         face_colors=np.full((6, 3), 0.4),
     )
     path = cube.with_name("coloured.ply")
-    formats.write(path, full, REGISTRY)
+    gate.write(path, full, REGISTRY)
     return path
 
 
@@ -112,10 +112,10 @@ def test_a_wrong_number_of_files_is_a_wrong_use(orbiframe, arguments):
 
 
 def test_normals_and_colours_are_kept_as_far_as_the_format_has_them(orbiframe, coloured, tmp_path):
-    full = formats.read(coloured, REGISTRY)
+    full = gate.read(coloured, REGISTRY)
     ran = orbiframe("convert", coloured, tmp_path / "out.off", "--strict")
     assert (ran.status, ran.err) == (0, "")
-    found = formats.read(tmp_path / "out.off", REGISTRY)
+    found = gate.read(tmp_path / "out.off", REGISTRY)
     for table in ("vertices", "tail", "normals", "colors", "face_colors"):
         np.testing.assert_array_equal(getattr(found, table), getattr(full, table))
 
@@ -209,7 +209,7 @@ def test_a_format_of_several_files_cannot_be_streamed(piped, cube, monkeypatch, 
 
 
 def test_a_stream_has_a_limit(piped, cube, monkeypatch, capsys):
-    monkeypatch.setattr(formats, "SIZE_LIMIT", 10)
+    monkeypatch.setattr(places, "SIZE_LIMIT", 10)
     assert piped(cube.read_bytes(), "convert", "-", "-", "-i", "off", "-o", "off") == (1, b"")
     assert "stdin: there are more bytes than the limit of 10" in capsys.readouterr().err
 

@@ -7,9 +7,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from orbiframe.fitting import pipeline
 from orbiframe.cli.progress import Progress
 from orbiframe.cli.report import json_text, summary, write_report
+from orbiframe.fitting import pipeline
 
 KEYS = {
     "surface": {"euler_characteristic", "orientable", "genus", "components"},

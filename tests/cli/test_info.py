@@ -10,9 +10,9 @@ from hypothesis import given, settings, strategies as st
 
 from orbiframe.cli.description import description, lines
 from orbiframe.cli.report import plain
+from orbiframe.meshes.orientation import reversed_faces
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.testing.polyhedra import reference_polyhedra
-from orbiframe.meshes.surface_type import reversed_faces
 
 CUBE_LINES = [
     "closed, orientable, genus 0, 1 component",

@@ -7,11 +7,11 @@ import sys
 import numpy as np
 import pytest
 
-from orbiframe.files import gate as formats
-from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.components.registry import Registry
+from orbiframe.files import gate
+from orbiframe.meshes.orientation import reversed_faces
+from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.testing.polyhedra import reference_polyhedra
-from orbiframe.meshes.surface_type import reversed_faces
 
 REGISTRY = Registry.discover()
 MESHES = reference_polyhedra()
@@ -104,13 +104,13 @@ def test_repairs_have_one_order(orbiframe, damaged, tmp_path):
         "triangulate",
     ]
     assert ran.err.count("nothing to change") == 4
-    assert formats.read(tmp_path / "out.stl", REGISTRY).face_count == 12
+    assert gate.read(tmp_path / "out.stl", REGISTRY).face_count == 12
 
 
 def test_nothing_is_repaired_unasked(orbiframe, damaged, tmp_path):
     ran = orbiframe("convert", damaged("weld"), tmp_path / "out.off")
     assert (ran.status, ran.err) == (0, "")
-    assert len(formats.read(tmp_path / "out.off", REGISTRY).vertices) == 24
+    assert len(gate.read(tmp_path / "out.off", REGISTRY).vertices) == 24
     refused = orbiframe("convert", damaged("two corners"), tmp_path / "out.off")
     assert refused.status == 1
     assert "face 6 has the vertices 0 1 0 1" in refused.err

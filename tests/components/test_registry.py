@@ -8,9 +8,9 @@ from textwrap import dedent
 
 import pytest
 
+from orbiframe.components.registry import Registry
 from orbiframe.errors import PluginError, UsageError
 from orbiframe.plugin import Component, hookimpl
-from orbiframe.components.registry import Registry
 
 PLUGIN = """
 from orbiframe.plugin import Component, hookimpl

@@ -11,8 +11,8 @@ from corpus.answers import Mesh, Refused
 from corpus.bad_files import cases
 
 from orbiframe import FormatError, Polyhedron
-from orbiframe.files import gate as formats
 from orbiframe.components.registry import Registry
+from orbiframe.files import gate
 
 REGISTRY = Registry.discover()
 CASES = list(cases())
@@ -30,11 +30,11 @@ def test_every_file_gets_its_answer(case, tmp_path):
     path.write_bytes(case.content)
     if isinstance(case.answer, Refused):
         with pytest.raises(FormatError, match=f"(?s){case.name.replace('.', '[.]')}.*({case.answer.words})"):
-            formats.read(path, REGISTRY)
+            gate.read(path, REGISTRY)
         return
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
-        found = formats.read(path, REGISTRY)
+        found = gate.read(path, REGISTRY)
     require(found, case.answer)
     assert bool(told) == case.answer.warned, [str(w.message) for w in told]
 

@@ -14,8 +14,8 @@ from orbiframe_polygons.threemf_reader import MODEL, RELATIONS
 from orbiframe_polygons.threemf_writer import RELATION
 
 from orbiframe import FormatError
-from orbiframe.files import gate as formats
 from orbiframe.components.registry import Registry
+from orbiframe.files import gate, soundness
 
 REGISTRY = Registry.discover()
 VALID = {
@@ -105,12 +105,12 @@ def test_a_damaged_file_is_read_or_refused_and_nothing_else(tmp_path, name, data
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         try:
-            found = formats.read(path, REGISTRY)
+            found = gate.read(path, REGISTRY)
         except FormatError as error:
             found = str(error)
     if isinstance(found, str):
         assert name in found
         assert "reading failed" not in found, "the reader itself did not see it"
         return
-    formats.require_sound(found, path)
+    soundness.require_sound(found, path)
     assert np.isfinite(found.vertices).all()

@@ -16,8 +16,8 @@ from orbiframe_polygons.threemf_reader import MODEL, RELATIONS
 from orbiframe_polygons.threemf_writer import RELATION
 
 from orbiframe import FormatError
-from orbiframe.files import gate as formats
 from orbiframe.components.registry import Registry
+from orbiframe.files import gate
 
 REGISTRY = Registry.discover()
 SECRET = "secret-place"
@@ -26,7 +26,7 @@ SECRET = "secret-place"
 def attempt(path) -> None:
     with warnings.catch_warnings(), contextlib.suppress(FormatError):
         warnings.simplefilter("ignore")
-        formats.read(path, REGISTRY)
+        gate.read(path, REGISTRY)
 
 
 def seconds_of(path) -> float:
@@ -59,7 +59,7 @@ READ = """
 import sys, warnings
 from pathlib import Path
 from orbiframe import FormatError
-from orbiframe.files import gate as formats
+from orbiframe.files import gate
 from orbiframe.components.registry import Registry
 
 def listen(event, arguments):
@@ -71,7 +71,7 @@ if len(sys.argv) > 2:
     function = getattr(importlib.import_module("orbiframe_meshio.cells"), "polyhedron_of")
 else:
     registry = Registry.discover()
-    function = lambda path: formats.read(path, registry)
+    function = lambda path: gate.read(path, registry)
 try:
     function(Path(sys.argv[1]))
     print("read")

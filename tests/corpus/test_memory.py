@@ -9,7 +9,7 @@ import pytest
 from documents import ROOT
 from plugins.test_compiled_texts import SWITCHES
 
-from orbiframe.files import gate as formats
+from orbiframe.files import gate
 
 sys.path.append(str(ROOT / "benchmarks"))
 from formats import ARRAYS, REGISTRY, torus
@@ -17,9 +17,9 @@ from formats import ARRAYS, REGISTRY, torus
 
 def sizes(path) -> tuple[int, int]:
     """The most memory in use while a file is read, and that of its mesh, in bytes."""
-    formats.read(path, REGISTRY)  # loads the compiled loops
+    gate.read(path, REGISTRY)  # loads the compiled loops
     tracemalloc.start()
-    found = formats.read(path, REGISTRY)
+    found = gate.read(path, REGISTRY)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     return peak, sum(getattr(found, array).nbytes for array in ARRAYS)
@@ -44,7 +44,7 @@ def test_memory_grows_by_at_most_five_times_the_mesh(tmp_path, monkeypatch, suff
     found = []
     for triangles in (count, 2 * count):
         path = tmp_path / f"{triangles}.{suffix}"
-        formats.write(path, torus(triangles), REGISTRY, options=options)
+        gate.write(path, torus(triangles), REGISTRY, options=options)
         found.append(sizes(path))
     (low, small), (high, large) = found
     assert high - low <= 5 * (large - small)

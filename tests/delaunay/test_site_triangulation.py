@@ -9,15 +9,15 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from lifted_sites import WORDS, delaunay_areas, group_of, random_sites
 
-from orbiframe.orbifolds.atlas import Points
-from orbiframe.delaunay.polygon_fan import cell_triangulation
-from orbiframe.delaunay.triangle_arrays import cells_of, flip
-from orbiframe.delaunay.site_triangulation import delaunay, delaunay_of_vertices
-from orbiframe.errors import GeometryError, MapError
 from orbiframe.delaunay.lawson_flips import wants_flip
-from orbiframe.delaunay.sites import vertex_points
-from orbiframe.delaunay.voronoi import circumcentres, circumradii
 from orbiframe.delaunay.point_walk import locate
+from orbiframe.delaunay.polygon_fan import cell_triangulation
+from orbiframe.delaunay.site_triangulation import delaunay, delaunay_of_vertices
+from orbiframe.delaunay.sites import vertex_points
+from orbiframe.delaunay.triangle_arrays import cells_of, flip
+from orbiframe.delaunay.voronoi import circumcentres, circumradii
+from orbiframe.errors import GeometryError, MapError
+from orbiframe.orbifolds.atlas import Points
 from orbiframe.words.word import Word
 
 FLAT_OR_HYPERBOLIC = [word for word in WORDS if Word.parse(word).euler_characteristic <= 0]

@@ -7,15 +7,15 @@ import pytest
 from lifted_sites import group_of, random_sites
 from reference_surfaces import ALL, triangulated
 
-from orbiframe.orbifolds.atlas import Points
+from orbiframe.delaunay.point_walk import locate
 from orbiframe.delaunay.polygon_fan import cell_triangulation
 from orbiframe.delaunay.site_triangulation import delaunay
-from orbiframe.errors import FitError, MapError
-from orbiframe.planes.quadrature import triangle_points
 from orbiframe.delaunay.sites import lloyd, poisson_disc, uniform_points
 from orbiframe.delaunay.spline_domain import spline_domain
 from orbiframe.delaunay.voronoi import cell_areas, circumcentres, kites
-from orbiframe.delaunay.point_walk import locate
+from orbiframe.errors import FitError, MapError
+from orbiframe.orbifolds.atlas import Points
+from orbiframe.planes.quadrature import triangle_points
 
 WORDS = ("aA", "aa", "abAB", "abaB", "abcdABCD", "aabbcc")
 

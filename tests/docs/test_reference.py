@@ -13,12 +13,12 @@ import pytest
 from documents import ROOT, section, table_rows
 
 from orbiframe import FormatError
-from orbiframe.files import gate as formats
-from orbiframe.fitting import pipeline
 from orbiframe.cli import plugin as commands
-from orbiframe.fitting.config import OPEN_NAMES, STEPS, Config, Output
 from orbiframe.components.options import options_of
 from orbiframe.components.registry import Registry
+from orbiframe.files import gate
+from orbiframe.fitting import pipeline
+from orbiframe.fitting.config import OPEN_NAMES, STEPS, Config, Output
 
 REFERENCE = ROOT / "docs" / "reference"
 
@@ -105,7 +105,7 @@ def test_every_suffix_is_in_the_table_of_formats(registry):
 
 
 def test_every_exporter_is_in_the_table_of_exact_formats(registry):
-    rows = table_rows(section(REFERENCE / "formats.md", "Exact formats"))
+    rows = table_rows(section(REFERENCE / "gate.md", "Exact formats"))
     shown = [(unquoted(name), tuple(unquoted(suffixes).split()), unquoted(needs)) for name, suffixes, needs, _ in rows]
     declared = [(c.name, c.suffixes, c.extra or "–") for c in registry.components("exporter")]
     assert sorted(shown) == sorted(declared)
@@ -118,11 +118,11 @@ COLUMNS = {"normals": 4, "colors": 5, "face_colors": 6}
 @pytest.mark.parametrize("name", ["off", "obj", "ply", "stl"])
 def test_what_the_table_says_of_a_format_is_kept(name, registry, tmp_path):
     row = next(row for row in _formats() if unquoted(row[0]) == name)
-    mesh = formats.read(ROOT / "datasets" / ("dodecahedron.off" if row[3] == "polygons" else "sphere.off"), registry)
+    mesh = gate.read(ROOT / "datasets" / ("dodecahedron.off" if row[3] == "polygons" else "sphere.off"), registry)
     grey = np.full((mesh.face_count, 3), 0.2)
     full = replace(mesh, normals=mesh.vertices, colors=np.full_like(mesh.vertices, 0.6), face_colors=grey)
-    formats.write(tmp_path / f"full.{name}", full, registry)
-    found = formats.read(tmp_path / f"full.{name}", registry)
+    gate.write(tmp_path / f"full.{name}", full, registry)
+    found = gate.read(tmp_path / f"full.{name}", registry)
     assert sorted(found.face_sizes) == sorted(mesh.face_sizes)
     assert {key: "no" if getattr(found, key) is None else "yes" for key in COLUMNS} == {
         key: row[column] for key, column in COLUMNS.items()
@@ -131,13 +131,13 @@ def test_what_the_table_says_of_a_format_is_kept(name, registry, tmp_path):
 
 @pytest.mark.parametrize("name", ["stl"])
 def test_a_format_of_triangles_refuses_polygons(name, registry, tmp_path):
-    mesh = formats.read(ROOT / "datasets" / "dodecahedron.off", registry)
+    mesh = gate.read(ROOT / "datasets" / "dodecahedron.off", registry)
     with pytest.raises(FormatError):
-        formats.write(tmp_path / f"mesh.{name}", mesh, registry)
+        gate.write(tmp_path / f"mesh.{name}", mesh, registry)
 
 
 def _formats() -> list[list[str]]:
-    return table_rows(section(REFERENCE / "formats.md", "Formats"))
+    return table_rows(section(REFERENCE / "gate.md", "Formats"))
 
 
 def test_every_key_of_the_report_is_in_its_table(registry):

@@ -6,12 +6,11 @@ import sys
 import numpy as np
 import pytest
 
-from orbiframe.files import sandbox as confinement
-from orbiframe.files import gate as formats
-from orbiframe.errors import FormatError, PluginError, UsageError
-from orbiframe.plugin import Component
-from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.components.registry import Registry
+from orbiframe.errors import FormatError, PluginError, UsageError
+from orbiframe.files import gate, sandbox, soundness
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.plugin import Component
 
 REGISTRY = Registry.discover()
 TETRAHEDRON = Polyhedron.from_faces(
@@ -49,34 +48,34 @@ def path(tmp_path):
 @pytest.mark.parametrize("suffix", [".off", ".OBJ", ".ply", ".stl"])
 def test_what_is_written_is_read(tmp_path, suffix):
     path = tmp_path / f"mesh{suffix}"
-    formats.write(path, TETRAHEDRON, REGISTRY)
-    found = formats.read(path, REGISTRY)
+    gate.write(path, TETRAHEDRON, REGISTRY)
+    found = gate.read(path, REGISTRY)
     assert np.array_equal(found.vertices[found.tail], TETRAHEDRON.vertices[TETRAHEDRON.tail])
     assert [p.name for p in tmp_path.iterdir()] == [path.name]
 
 
 def test_a_format_by_name_goes_before_the_suffix(tmp_path):
-    formats.write(tmp_path / "mesh.txt", TETRAHEDRON, REGISTRY, format="off")
+    gate.write(tmp_path / "mesh.txt", TETRAHEDRON, REGISTRY, format="off")
     assert (tmp_path / "mesh.txt").read_bytes().startswith(b"OFF\n")
-    assert formats.read(tmp_path / "mesh.txt", REGISTRY, format="off").face_count == 4
+    assert gate.read(tmp_path / "mesh.txt", REGISTRY, format="off").face_count == 4
     with pytest.raises(UsageError, match="Did you mean 'off'"):
-        formats.read(tmp_path / "mesh.txt", REGISTRY, format="offf")
+        gate.read(tmp_path / "mesh.txt", REGISTRY, format="offf")
 
 
 def test_unknown_suffixes_are_named_with_the_known_ones(tmp_path):
     path = tmp_path / "mesh.plyy"
     path.write_bytes(b"ply")
     with pytest.raises(FormatError, match=r"mesh\.plyy.*'\.plyy'.*\.off.*Did you mean '\.ply'"):
-        formats.read(path, REGISTRY)
+        gate.read(path, REGISTRY)
     with pytest.raises(FormatError, match="no suffix"):
-        formats.write(tmp_path / "mesh", TETRAHEDRON, REGISTRY)
+        gate.write(tmp_path / "mesh", TETRAHEDRON, REGISTRY)
 
 
 def test_two_components_for_a_suffix_are_an_error_that_names_both(tmp_path):
     path = tmp_path / "mesh.any"
     path.write_bytes(b"something")
     with pytest.raises(PluginError, match="one, two"):
-        formats.read(path, Shelf(one=lambda p: TETRAHEDRON, two=lambda p: TETRAHEDRON))
+        gate.read(path, Shelf(one=lambda p: TETRAHEDRON, two=lambda p: TETRAHEDRON))
 
 
 def test_every_suffix_belongs_to_one_component():
@@ -101,20 +100,20 @@ def test_only_regular_files_reach_a_reader(tmp_path):
     kinds = {"folder": "folder", "pipe": "pipe", "zero": "device", "loop": "reached", "empty": "empty"}
     for name, kind in kinds.items():
         with pytest.raises(FormatError, match=rf"{name}\.one.*{kind}"):
-            formats.read(tmp_path / f"{name}.one", Shelf(one=never))
+            gate.read(tmp_path / f"{name}.one", Shelf(one=never))
 
 
 def test_a_missing_file_is_named_with_its_nearest_neighbour(path):
     with pytest.raises(FormatError, match=r"mash\.one.*no such file.*Did you mean 'mesh\.one'"):
-        formats.read(path.with_name("mash.one"), Shelf(one=never))
+        gate.read(path.with_name("mash.one"), Shelf(one=never))
     with pytest.raises(FormatError):
-        formats.read(path.with_name("a\0b.one"), Shelf(one=never))
+        gate.read(path.with_name("a\0b.one"), Shelf(one=never))
 
 
 def test_the_size_limit_holds(path):
     with pytest.raises(FormatError, match=r"9 bytes.*limit of 8"):
-        formats.read(path, Shelf(one=never), size_limit=8)
-    assert formats.read(path, shelf_of(TETRAHEDRON), size_limit=9) is TETRAHEDRON
+        gate.read(path, Shelf(one=never), size_limit=8)
+    assert gate.read(path, shelf_of(TETRAHEDRON), size_limit=9) is TETRAHEDRON
 
 
 # ---- after ----------------------------------------------------------------------------------------------------------
@@ -132,12 +131,12 @@ def raising(error):
 )
 def test_whatever_a_reader_raises_becomes_a_format_error(path, error):
     with pytest.raises(FormatError, match=r"mesh\.one"):
-        formats.read(path, raising(error))
+        gate.read(path, raising(error))
 
 
 def test_an_interrupt_is_no_bad_file(path):
     with pytest.raises(KeyboardInterrupt):
-        formats.read(path, raising(KeyboardInterrupt()))
+        gate.read(path, raising(KeyboardInterrupt()))
 
 
 def unsound():
@@ -165,16 +164,16 @@ def unsound():
 def test_no_unsound_polyhedron_passes_in_either_direction(path, name):
     polyhedron, complaint = unsound()[name]
     with pytest.raises(FormatError, match=f"mesh.one.*{complaint}"):
-        formats.read(path, shelf_of(polyhedron))
+        gate.read(path, shelf_of(polyhedron))
     with pytest.raises(FormatError, match=f"mesh.one.*{complaint}"):
-        formats.write(path, polyhedron, Shelf(one=never))
+        gate.write(path, polyhedron, Shelf(one=never))
     assert path.read_bytes() == b"something"
 
 
 def test_distinct_vertices_by_brute_force():
     rng = np.random.default_rng(5)
     faces = [rng.integers(0, 6, n).tolist() for n in rng.integers(1, 9, 200)]
-    found = formats.distinct_vertices(Polyhedron.from_faces(np.zeros((6, 3)), faces))
+    found = soundness.distinct_vertices(Polyhedron.from_faces(np.zeros((6, 3)), faces))
     assert found.tolist() == [len(set(face)) for face in faces]
 
 
@@ -189,7 +188,7 @@ def half(path, polyhedron):
 def test_nothing_half_written_is_left(path):
     for writer in (half, lambda p, polyhedron: None, lambda p, polyhedron: p.touch()):
         with pytest.raises(FormatError, match=r"mesh\.one"):
-            formats.write(path, TETRAHEDRON, Shelf(one=writer))
+            gate.write(path, TETRAHEDRON, Shelf(one=writer))
         assert path.read_bytes() == b"something"
         assert [p.name for p in path.parent.iterdir()] == [path.name]
 
@@ -199,14 +198,14 @@ def test_files_that_belong_together_are_moved_together(path):
         p.write_bytes(b"mesh")
         p.with_suffix(".bin").write_bytes(b"points")
 
-    formats.write(path, TETRAHEDRON, Shelf(one=writer))
+    gate.write(path, TETRAHEDRON, Shelf(one=writer))
     assert {p.name: p.read_bytes() for p in path.parent.iterdir()} == {"mesh.one": b"mesh", "mesh.bin": b"points"}
 
 
 def test_a_link_is_followed_and_kept(path):
     link = path.with_name("link.one")
     link.symlink_to(path)
-    formats.write(link, TETRAHEDRON, Shelf(one=lambda p, polyhedron: p.write_bytes(b"new") and None))
+    gate.write(link, TETRAHEDRON, Shelf(one=lambda p, polyhedron: p.write_bytes(b"new") and None))
     assert link.is_symlink()
     assert path.read_bytes() == b"new"
 
@@ -214,11 +213,11 @@ def test_a_link_is_followed_and_kept(path):
 def test_only_files_in_a_folder_are_written(path, tmp_path):
     os.mkfifo(tmp_path / "pipe.one")
     with pytest.raises(FormatError, match="pipe"):
-        formats.write(tmp_path / "pipe.one", TETRAHEDRON, Shelf(one=half))
+        gate.write(tmp_path / "pipe.one", TETRAHEDRON, Shelf(one=half))
     with pytest.raises(FormatError, match="no folder"):
-        formats.write(tmp_path / "none" / "mesh.one", TETRAHEDRON, Shelf(one=half))
+        gate.write(tmp_path / "none" / "mesh.one", TETRAHEDRON, Shelf(one=half))
     with pytest.raises(FormatError, match="a folder"):
-        formats.write(tmp_path, TETRAHEDRON, Shelf(one=half))
+        gate.write(tmp_path, TETRAHEDRON, Shelf(one=half))
 
 
 def test_errors_name_the_file_and_not_where_it_was_made(path):
@@ -226,7 +225,7 @@ def test_errors_name_the_file_and_not_where_it_was_made(path):
         raise FormatError(f"{p}: no")
 
     with pytest.raises(FormatError) as caught:
-        formats.write(path, TETRAHEDRON, Shelf(one=refusing))
+        gate.write(path, TETRAHEDRON, Shelf(one=refusing))
     assert str(caught.value) == f"{path}: no"
 
 
@@ -251,7 +250,7 @@ def lack(path): raise PluginError("install it")
 def confined(tmp_path, monkeypatch):
     (tmp_path / "culprits.py").write_text(CULPRITS)
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    return lambda name, **limits: confinement.confined_read(f"culprits:{name}", tmp_path / "mesh.x", **limits)
+    return lambda name, **limits: sandbox.confined_read(f"culprits:{name}", tmp_path / "mesh.x", **limits)
 
 
 def test_a_confined_reader_returns_its_polyhedron(confined):

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 from fitted import REGISTRY, config, fitted, mesh_of
 
-from orbiframe.fitting import pipeline
 from orbiframe.errors import FormatError, OrbiframeError, UsageError
-from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.files.surface_file import load_surface, save_surface
+from orbiframe.fitting import pipeline
+from orbiframe.surfaces.surface import OrbifoldSurface
 
 NAMES = ["tetrahedron", "projective plane", "Klein bottle", "double torus"]
 SIZE = 60

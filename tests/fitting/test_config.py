@@ -7,11 +7,11 @@ from typing import Literal
 
 import pytest
 
-from orbiframe.fitting.config import Config
-from orbiframe.errors import ConfigError, PluginError, UsageError
 from orbiframe.components.options import options_of
-from orbiframe.plugin import Component, hookimpl
 from orbiframe.components.registry import Registry
+from orbiframe.errors import ConfigError, PluginError, UsageError
+from orbiframe.fitting.config import Config
+from orbiframe.plugin import Component, hookimpl
 
 
 class Wavelet:

@@ -8,12 +8,12 @@ import pytest
 from fitted import REGISTRY, config
 from signed_faces import WORDS, wandering
 
-from orbiframe.fitting import pipeline
 from orbiframe.cli.report import summary
 from orbiframe.errors import TopologyError
+from orbiframe.fitting import pipeline
+from orbiframe.meshes.defects import faces_with_repeated_vertices
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.testing.polyhedra import reference_polyhedra
-from orbiframe.meshes.surface_type import faces_with_repeated_vertices
 
 
 def test_a_long_finger_gets_a_warning() -> None:

@@ -14,13 +14,14 @@ import pytest
 from fitted import DATASETS, REGISTRY, config, fitted, mesh_of
 from random_polyhedra import face_lists, relabelled
 
+from orbiframe.components.registry import Registry
+from orbiframe.errors import ConfigError, FitError, FormatError, MapError, OrbiframeError, TopologyError, UsageError
 from orbiframe.fitting import pipeline
 from orbiframe.fitting.config import Config
-from orbiframe.errors import ConfigError, FitError, FormatError, MapError, OrbiframeError, TopologyError, UsageError
+from orbiframe.meshes.orientation import reversed_faces
 from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.components.registry import Registry
+from orbiframe.meshes.surface_type import surface_type
 from orbiframe.testing.polyhedra import reference_polyhedra
-from orbiframe.meshes.surface_type import reversed_faces, surface_type
 
 SIZE = 60
 REPORT_PAGE = Path(__file__).parents[2] / "docs" / "reference" / "report.md"
@@ -64,10 +65,10 @@ def test_the_order_of_faces_and_vertices_hardly_matters() -> None:
 
 
 def test_a_path_a_string_and_an_object_are_the_same_mesh() -> None:
-    from orbiframe.files import gate as formats
+    from orbiframe.files import gate
 
     path = DATASETS / "torus.off"
-    made = [pipeline.fit(m, config(SIZE), REGISTRY) for m in (str(path), formats.read(path, REGISTRY))]
+    made = [pipeline.fit(m, config(SIZE), REGISTRY) for m in (str(path), gate.read(path, REGISTRY))]
     for result in made:
         np.testing.assert_array_equal(result.output.vertices, fitted("torus.off", SIZE).output.vertices)
 

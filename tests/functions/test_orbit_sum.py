@@ -11,11 +11,11 @@ import reference_surfaces as surfaces
 from hypothesis import given, settings, strategies as st
 from third_derivatives import error_of_third_derivatives
 
-from orbiframe.orbifolds.atlas import Points
-from orbiframe.functions.basis import OrbitSumBasis
 from orbiframe.errors import FitError
-from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.functions.orbit_sum import Pairs, reaching_pairs, versine_distance
+from orbiframe.functions.orbit_sum_basis import OrbitSumBasis
+from orbiframe.orbifolds.atlas import Points
+from orbiframe.orbifolds.orbifold import Orbifold
 
 NAMES = list(surfaces.ALL)
 

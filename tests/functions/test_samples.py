@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from orbiframe.functions.sampling import coordinate_samples
+from orbiframe.functions.samples import coordinate_samples
+from orbiframe.meshes.sizes import vector_areas
 from orbiframe.testing.reference import RECIPES, reference_triangulations
-from orbiframe.meshes.surface_type import vector_areas
 
 
 @pytest.mark.parametrize("name", RECIPES)

@@ -9,21 +9,12 @@ import pytest
 from hypothesis import assume, given, settings, strategies as st
 from reference_geometries import GEOMETRIES
 
-from orbiframe import (
-    GeometryError,
-    MirrorWord,
-    Signature,
-    SymmetryGroup,
-    SymmetryPolygon,
-    TopologyError,
-    cell_triangulation,
-    orbifold_cell,
-    orbifold_group,
-    orbifold_of,
-    stabilizer,
-)
-from orbiframe.words.conway_symbol import PLANE_GROUPS
+from orbiframe import GeometryError, TopologyError
+from orbiframe.delaunay import cell_triangulation
+from orbiframe.groups import SymmetryGroup, SymmetryPolygon, orbifold_cell, orbifold_group, orbifold_of, stabilizer
 from orbiframe.testing import Lab, contract_tests, group_laws
+from orbiframe.words import MirrorWord, Signature
+from orbiframe.words.conway_symbol import PLANE_GROUPS
 
 S2, E2, H2 = GEOMETRIES
 GEOMETRY = {1: S2, 0: E2, -1: H2}

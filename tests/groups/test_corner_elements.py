@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from reference_meshes import geometry
 
-from orbiframe import PolygonGroup, Word, regular_polygon, standard_word
+from orbiframe import Word
+from orbiframe.groups import PolygonGroup, regular_polygon
 from orbiframe.groups.corner_elements import corner_elements, products_of_pairings
+from orbiframe.words import standard_word
 
 WORDS = ["abAB", "abaB", "abAb", "aabb", "abABcdCD", "abcdABCD", "abcdbDAC", "aabbcc", "abACbC", "abbcca", "aabbccdd"]
 

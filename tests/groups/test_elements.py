@@ -7,23 +7,14 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from orbiframe_groups.finite import FiniteGroup
 from orbiframe_groups.lattice import lattice_group
+from orbiframe_invariants.word_growth import elements_by_length, even_corners, growth_series
 from reference_geometries import GEOMETRIES
 from reference_surfaces import brute_force_group
 
-from orbiframe import (
-    FundamentalPolygon,
-    GeometryError,
-    PolygonGroup,
-    Word,
-    dirichlet_cell,
-    elements_by_length,
-    elements_within,
-    growth_series,
-    regular_polygon,
-)
-from orbiframe.words.conway_symbol import Signature
+from orbiframe import FundamentalPolygon, GeometryError, Word
+from orbiframe.groups import PolygonGroup, dirichlet_cell, elements_within, regular_polygon
 from orbiframe.groups.conway_group import orbifold_group
-from orbiframe_invariants.word_growth import even_corners
+from orbiframe.words.conway_symbol import Signature
 
 S2, E2, H2 = GEOMETRIES
 

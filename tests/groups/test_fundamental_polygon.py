@@ -2,7 +2,9 @@ import numpy as np
 import pytest
 from reference_geometries import GEOMETRIES
 
-from orbiframe import FundamentalPolygon, GeometryError, Word, regular_polygon, standard_word
+from orbiframe import FundamentalPolygon, GeometryError, Word
+from orbiframe.groups import regular_polygon
+from orbiframe.words import standard_word
 
 S2, E2, H2 = GEOMETRIES
 

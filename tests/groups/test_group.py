@@ -5,7 +5,10 @@ from orbiframe_groups.finite import FiniteGroup
 from orbiframe_groups.lattice import lattice_group
 from reference_geometries import GEOMETRIES
 
-from orbiframe import FundamentalPolygon, GeometryError, PolygonGroup, Spin, Word, regular_polygon, standard_word
+from orbiframe import FundamentalPolygon, GeometryError, Word
+from orbiframe.groups import PolygonGroup, regular_polygon
+from orbiframe.planes import Spin
+from orbiframe.words import standard_word
 
 S2, E2, H2 = GEOMETRIES
 

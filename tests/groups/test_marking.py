@@ -9,9 +9,11 @@ from orbiframe_markers.tree_cotree import tree_cotree
 from random_polyhedra import random_polyhedra
 from reference_surfaces import ALL, triangulated
 
-from orbiframe import Marking, Polyhedron, Presentation, TopologyError, Word, marking_along, surface_type
+from orbiframe import Marking, Polyhedron, TopologyError, Word, surface_type
+from orbiframe.groups import marking_along
 from orbiframe.testing.marker_laws import _plain
 from orbiframe.testing.polyhedra import reference_polyhedra
+from orbiframe.words import Presentation
 
 WORDS = ["abAB", "abaB", "aabb", "aa", "abABcdCD", "abcdABCD", "aabbcc", "abACbC", "abcAdCeDEfghGijIBJHF"]
 

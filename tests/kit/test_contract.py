@@ -6,9 +6,9 @@ from itertools import islice
 
 import pytest
 
+from orbiframe.components.registry import Registry, resolve
 from orbiframe.errors import OrbiframeError, UsageError
 from orbiframe.plugin import KINDS, Component
-from orbiframe.components.registry import Registry, resolve
 from orbiframe.testing import Lab, component_laws, contract_tests, laws_of
 from orbiframe.testing.check import check, equipments
 from orbiframe.testing.kit import bound, has_laws, tried
@@ -24,6 +24,7 @@ LAWFUL_KINDS = (
     "reader",
     "writer",
     "exporter",
+    "picture",
 )
 REGISTRY = Registry.discover()
 DECLARED = [component for component, _ in REGISTRY.declarations()]

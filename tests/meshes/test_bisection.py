@@ -8,13 +8,15 @@ from hypothesis import given, settings, strategies as st
 from random_polyhedra import random_triangle_meshes
 from signed_faces import WORDS, fan, wandering
 
+from orbiframe.errors import TopologyError
 from orbiframe.meshes.bisection import bisected, edge_length_for
 from orbiframe.meshes.face_diagonals import triangulated
-from orbiframe.errors import TopologyError
+from orbiframe.meshes.orientation import reversed_faces
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.sizes import vector_areas
 from orbiframe.meshes.subdivision import refine
+from orbiframe.meshes.surface_type import doubled_edges, surface_type
 from orbiframe.testing.polyhedra import reference_polyhedra
-from orbiframe.meshes.surface_type import doubled_edges, reversed_faces, surface_type, vector_areas
 
 SEEDS = st.integers(0, 2**32 - 1)
 PARTS = st.sampled_from([0.1, 0.25, 0.6, 1.5])

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from orbiframe.meshes.coincident_points import clusters, first_of_each, unit_scale
 from orbiframe.errors import TopologyError
+from orbiframe.meshes.coincident_points import clusters, first_of_each, unit_scale
 
 
 def by_brute_force(points: np.ndarray, tolerance: float) -> list[int]:

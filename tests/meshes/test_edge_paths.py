@@ -7,8 +7,15 @@ import pytest
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra, minimum_spanning_tree
 
+from orbiframe.meshes.edge_paths import (
+    Graph,
+    covering_points,
+    dijkstra_forest,
+    edge_graph,
+    farthest_points,
+    joining_edges,
+)
 from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.meshes.edge_paths import Graph, covering_points, dijkstra_forest, edge_graph, farthest_points, joining_edges
 
 
 def bumpy_torus(n: int, m: int) -> Polyhedron:

@@ -7,11 +7,13 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from random_polyhedra import edges_of, face_lists, random_polyhedra
 
-from orbiframe.meshes.face_diagonals import triangle_owner, triangulated
 from orbiframe.errors import TopologyError
+from orbiframe.meshes.face_diagonals import triangle_owner, triangulated
+from orbiframe.meshes.orientation import reversed_faces
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.sizes import vector_areas
+from orbiframe.meshes.surface_type import surface_type
 from orbiframe.testing.polyhedra import reference_polyhedra
-from orbiframe.meshes.surface_type import reversed_faces, surface_type, vector_areas
 
 SEEDS = st.integers(0, 2**32 - 1)
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from random_polyhedra import face_lists, random_polyhedra
 
-from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.open_edges import open_halfedges, seams
+from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.testing.polyhedra import reference_polyhedra
 
 SEEDS = st.integers(0, 2**32 - 1)

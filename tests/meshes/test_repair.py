@@ -10,22 +10,16 @@ import pytest
 from hypothesis import assume, given, settings, strategies as st
 from random_polyhedra import NAMES, face_lists, grown, random_polyhedra
 
-from orbiframe.meshes import repair
 from orbiframe.errors import TopologyError, UsageError
-from orbiframe.meshes.sizes import area, signed_volume
-from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes import repair
+from orbiframe.meshes.defects import defects, require_closed_surface
 from orbiframe.meshes.flat_faces import simple_loops
 from orbiframe.meshes.open_edges import open_halfedges, seams
+from orbiframe.meshes.orientation import oriented, reversed_faces
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.sizes import area, faces_without_area, signed_volume
+from orbiframe.meshes.surface_type import surface_type, without_unused_vertices
 from orbiframe.testing.polyhedra import reference_polyhedra
-from orbiframe.meshes.surface_type import (
-    defects,
-    faces_without_area,
-    oriented,
-    require_closed_surface,
-    reversed_faces,
-    surface_type,
-    without_unused_vertices,
-)
 
 SEEDS = st.integers(0, 2**32 - 1)
 MESHES = reference_polyhedra()

@@ -10,10 +10,10 @@ from hypothesis import given, settings, strategies as st
 from random_polyhedra import edges_of, face_lists, random_polyhedra
 
 from orbiframe.meshes.face_diagonals import triangulated
-from orbiframe.meshes.sizes import area, edge_lengths, needles, notes, signed_volume, valences
+from orbiframe.meshes.orientation import reversed_faces
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.sizes import area, edge_lengths, needles, notes, signed_volume, valences
 from orbiframe.testing.polyhedra import reference_polyhedra
-from orbiframe.meshes.surface_type import reversed_faces
 
 MESHES = reference_polyhedra()
 SHORT = 5 / math.tan(math.pi / 5) / 4 * (2 * math.sin(math.pi / 5)) ** 2

@@ -7,12 +7,15 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from random_polyhedra import random_triangle_meshes
 
-from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.errors import TopologyError
+from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe.meshes.fans import fan_labels
+from orbiframe.meshes.orientation import reversed_faces
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.sizes import vector_areas
 from orbiframe.meshes.subdivision import refine
+from orbiframe.meshes.surface_type import surface_type
 from orbiframe.testing.polyhedra import reference_polyhedra
-from orbiframe.meshes.surface_type import fan_labels, reversed_faces, surface_type, vector_areas
 
 SEEDS = st.integers(0, 2**32 - 1)
 

@@ -10,19 +10,13 @@ from hypothesis import assume, given, settings, strategies as st
 from random_polyhedra import NAMES, edges_of, face_lists, grown, random_polyhedra, relabelled
 
 from orbiframe.errors import TopologyError
+from orbiframe.meshes.defects import defects, require_closed_surface
+from orbiframe.meshes.fans import fan_labels
+from orbiframe.meshes.orientation import oriented, reversed_faces
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.sizes import vector_areas
+from orbiframe.meshes.surface_type import SurfaceType, surface_type, without_unused_vertices
 from orbiframe.testing.polyhedra import reference_polyhedra
-from orbiframe.meshes.surface_type import (
-    SurfaceType,
-    defects,
-    fan_labels,
-    oriented,
-    require_closed_surface,
-    reversed_faces,
-    surface_type,
-    vector_areas,
-    without_unused_vertices,
-)
 
 # Name: Euler characteristic, orientable, handles or crosscaps.
 KNOWN = {

@@ -9,7 +9,8 @@ import reference_surfaces as surfaces
 from hypothesis import given, settings, strategies as st
 from orbiframe_geometries.e2 import E2
 
-from orbiframe import FlatLattice, GeometryError, Orbifold, Points
+from orbiframe import GeometryError, Orbifold, Points
+from orbiframe.orbifolds import FlatLattice
 from orbiframe.orbifolds.flat_lattice import reduced_basis
 
 EUCLID = E2()

@@ -5,7 +5,8 @@ import pytest
 from orbiframe_groups.finite import FiniteGroup
 from reference_geometries import GEOMETRIES, random_points
 
-from orbiframe import FundamentalPolygon, GeometryError, PolygonGroup, Word, regular_polygon
+from orbiframe import FundamentalPolygon, GeometryError, Word
+from orbiframe.groups import PolygonGroup, regular_polygon
 
 S2, E2, H2 = GEOMETRIES
 FORM = np.array([1.0, -1.0, -1.0])

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from reference_meshes import geometry
 
-from orbiframe import Spin
+from orbiframe.planes import Spin
 
 seeds = st.integers(0, 2**32 - 1)
 

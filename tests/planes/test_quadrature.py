@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from reference_geometries import GEOMETRIES, random_points
 
-from orbiframe import Word, regular_polygon, triangle_points, triangle_rule
+from orbiframe import Word
+from orbiframe.groups import regular_polygon
+from orbiframe.planes import triangle_points, triangle_rule
 
 S2, E2, H2 = GEOMETRIES
 

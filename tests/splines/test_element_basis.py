@@ -10,7 +10,8 @@ from orbiframe_bases.bernstein import Bernstein
 from orbiframe_bases.clough_tocher import CloughTocher
 from orbiframe_bases.powell_sabin import PowellSabin2, PowellSabin3, PowellSabin5, PowellSabin6
 
-from orbiframe import ElementBasis, FitError, Points, bernstein_values
+from orbiframe import FitError, Points
+from orbiframe.splines import ElementBasis, bernstein_values
 from orbiframe.splines.galerkin import nearest_to_one
 
 NAMES = ["sphere", "projective plane", "torus", "Klein bottle", "Bolza", "three crosscaps", "one-vertex torus"]

@@ -10,7 +10,7 @@ from orbiframe_bases.powell_sabin import PowellSabin2, PowellSabin3, PowellSabin
 from scipy.linalg import eigh
 from scipy.sparse import csr_array, diags_array
 
-from orbiframe import ElementBasis
+from orbiframe.splines import ElementBasis
 from orbiframe.splines.galerkin import bending, integrals, mass, nearest_to_one, stiffness
 
 NAMES = ["sphere", "projective plane", "torus", "Klein bottle", "Bolza", "three crosscaps"]

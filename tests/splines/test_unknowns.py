@@ -10,8 +10,7 @@ import reference_surfaces as surfaces
 import spline_checks as checks
 from hypothesis import given, settings, strategies as st
 
-from orbiframe import (
-    GeodesicTriangulation,
+from orbiframe.splines import (
     PowellSabinSplit,
     Unknowns,
     VertexJets,
@@ -23,6 +22,7 @@ from orbiframe import (
     shaped_triangles,
     symmetric_power,
 )
+from orbiframe.triangulations import GeodesicTriangulation
 
 each_domain = pytest.mark.parametrize("name", list(checks.MAKERS))
 

@@ -11,15 +11,17 @@ import pytest
 from fitted import REGISTRY, config, fitted, mesh_of
 from reference_surfaces import triangulated as closed_form
 
+from orbiframe.errors import FitError
 from orbiframe.fitting import pipeline
-from orbiframe.orbifolds.atlas import Points
 from orbiframe.functions.basis import Basis
 from orbiframe.meshes.bisection import bisected
-from orbiframe.errors import FitError
+from orbiframe.meshes.orientation import reversed_faces
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.sizes import vector_areas
+from orbiframe.meshes.surface_type import surface_type
+from orbiframe.orbifolds.atlas import Points
 from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.testing.polyhedra import reference_polyhedra
-from orbiframe.meshes.surface_type import reversed_faces, surface_type, vector_areas
 
 NAMES = ["tetrahedron", "projective plane", "torus", "Klein bottle", "double torus"]
 SIZE = 60

@@ -11,12 +11,14 @@ from exact_surfaces import at_lattice, on_cells, surface_of
 from orbiframe_bases.bernstein import Bernstein
 from orbiframe_bases.powell_sabin import PowellSabin2
 
-from orbiframe import FitError, PeriodicPatch, patches_of
+from orbiframe import FitError
 from orbiframe.meshes.face_diagonals import triangulated
-from orbiframe.surfaces.triangle_patches import _pieces, triangle_patches
+from orbiframe.meshes.orientation import reversed_faces
+from orbiframe.surfaces import PeriodicPatch, patches_of
 from orbiframe.surfaces.patch_gluing import alike, quartered
+from orbiframe.surfaces.periodic_patch import _pieces
+from orbiframe.surfaces.triangle_patches import triangle_patches
 from orbiframe.testing.polyhedra import reference_polyhedra
-from orbiframe.meshes.surface_type import reversed_faces
 
 SURFACES = ["tetrahedron", "projective plane", "torus", "Klein bottle", "double torus"]
 FAMILIES = [

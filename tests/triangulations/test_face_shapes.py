@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 from reference_meshes import DATASETS, geometry
 
-from orbiframe.orbifolds.atlas import Atlas
+from orbiframe.components.registry import Registry
+from orbiframe.files.gate import read
 from orbiframe.meshes.bisection import bisected
 from orbiframe.meshes.face_diagonals import outline, triangulated
-from orbiframe.triangulations.face_shapes import FaceShapes, face_shapes
-from orbiframe.files.gate import read
-from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.components.registry import Registry
 from orbiframe.meshes.regular_triangles import regular_triangles
+from orbiframe.orbifolds.atlas import Atlas
+from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.testing.polyhedra import reference_polyhedra
+from orbiframe.triangulations.face_shapes import FaceShapes, face_shapes
 from orbiframe.triangulations.triangulation import Triangulation
 
 

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 import spline_checks as checks
 
-from orbiframe import GeodesicTriangulation, MapError
+from orbiframe import MapError
 from orbiframe.testing.reference import RECIPES, reference_triangulations
+from orbiframe.triangulations import GeodesicTriangulation
 
 each_domain = pytest.mark.parametrize("name", list(checks.MAKERS))
 each_map = pytest.mark.parametrize("name", list(RECIPES))

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import spline_checks as checks
 
-from orbiframe import FitError, GeodesicTriangulation, Points
+from orbiframe import FitError, Points
+from orbiframe.triangulations import GeodesicTriangulation
 from orbiframe.triangulations.point_location import Locator
 
 each_domain = pytest.mark.parametrize("name", list(checks.MAKERS))

@@ -10,9 +10,9 @@ from hypothesis import given, settings, strategies as st
 from reference_surfaces import ALL, in_two_frames, torus, triangulated as closed_form
 
 from orbiframe.errors import MapError
+from orbiframe.meshes.orientation import reversed_faces
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.testing.reference import RECIPES, reference_triangulations
-from orbiframe.meshes.surface_type import reversed_faces
 from orbiframe.triangulations.triangulation import Triangulation
 
 SEEDS = st.integers(0, 2**32 - 1)

@@ -7,7 +7,8 @@ from itertools import combinations_with_replacement, product
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from orbiframe import MirrorWord, Relations, Signature, TopologyError, Word, word_of
+from orbiframe import TopologyError, Word
+from orbiframe.words import MirrorWord, Relations, Signature, word_of
 from orbiframe.words.conway_symbol import PLANE_GROUPS
 
 ORDERS = st.lists(st.integers(2, 12), max_size=4).map(tuple)

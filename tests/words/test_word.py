@@ -3,7 +3,8 @@ import itertools
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from orbiframe import TopologyError, Word, standard_word
+from orbiframe import TopologyError, Word
+from orbiframe.words import standard_word
 from orbiframe.words.word import inverse_letters, parse_letters, reduced_letters
 
 

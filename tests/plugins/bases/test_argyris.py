@@ -10,7 +10,8 @@ import pytest
 import spline_checks
 from orbiframe_bases.argyris import Argyris, Zenisek
 
-from orbiframe import ElementBasis, UsageError
+from orbiframe import UsageError
+from orbiframe.splines import ElementBasis
 from orbiframe.testing import contract_tests
 
 NAMES = list(spline_checks.MAKERS)

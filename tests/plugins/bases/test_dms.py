@@ -9,8 +9,10 @@ from orbiframe_bases.dms import DMS
 from orbiframe_bases.knot_clouds import knot_clouds
 from simplex_checks import jump, reproduction_error
 
-from orbiframe import GeodesicTriangulation, Points, UsageError, exponents
+from orbiframe import Points, UsageError
+from orbiframe.splines import exponents
 from orbiframe.testing import contract_tests
+from orbiframe.triangulations import GeodesicTriangulation
 
 NAMES = [name for name in checks.MAKERS if name != "one-vertex Bolza"]
 

@@ -7,7 +7,9 @@ import pytest
 from orbiframe_bases.invariant_gaussian import InvariantGaussian
 from reference_geometries import GEOMETRIES
 
-from orbiframe import GeometryError, Points, Signature, UsageError, orbifold_group, sites_of_cell
+from orbiframe import GeometryError, Points, UsageError
+from orbiframe.groups import orbifold_group, sites_of_cell
+from orbiframe.words import Signature
 
 SYMBOLS = ["532", "*532", "3*2", "4x", "*", "4*2", "22x", "*632", "2222", "*x", "*237", "237", "2*23", "*2*"]
 

@@ -17,9 +17,8 @@ from orbiframe_bases.powell_sabin import (
     PowellSabin6,
 )
 
-from orbiframe import (
-    FitError,
-    Points,
+from orbiframe import FitError, Points
+from orbiframe.splines import (
     PowellSabinSplit,
     Unknowns,
     blossom,

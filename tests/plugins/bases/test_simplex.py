@@ -12,8 +12,10 @@ from orbiframe_bases.simplex_program import cloud_program, subset_program
 from orbiframe_geometries.h2 import H2
 from simplex_checks import jump, recursion, reproduction_error
 
-from orbiframe import FitError, GeodesicTriangulation, Points, UsageError, bernstein_values
+from orbiframe import FitError, Points, UsageError
+from orbiframe.splines import bernstein_values
 from orbiframe.testing import contract_tests
+from orbiframe.triangulations import GeodesicTriangulation
 
 NAMES = [name for name in checks.MAKERS if not name.startswith("one-vertex")]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-DATASETS = Path(__file__).parents[2] / "datasets"
+DATASETS = Path(__file__).parents[3] / "datasets"
 PLATE = DATASETS / "plate_genus2_coarse.off"
 
 

@@ -9,28 +9,20 @@ import xml.etree.ElementTree as ElementTree
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
-from reference_geometries import GEOMETRIES
-
-from orbiframe import (
-    FormatError,
-    GeometryError,
-    PluginError,
-    Registry,
-    Signature,
-    UsageError,
-    Word,
-    draw_group,
-    group_picture,
-    orbifold_group,
-    save_picture,
-)
-from orbiframe_drawing.polygon import cell_of
 from orbiframe_drawing.colours import channels, diverging, line_colour, tint
+from orbiframe_drawing.file import save_picture
+from orbiframe_drawing.group_picture import draw_group, group_picture
 from orbiframe_drawing.models import model_of
 from orbiframe_drawing.page import Page
 from orbiframe_drawing.picture import Curve, Label, Picture, Raster, Shape, beside, chained, circle, polygon
+from orbiframe_drawing.polygon import cell_of
 from orbiframe_drawing.svg import svg_text
 from orbiframe_drawing.tiles import nearest_tiles, tiles_within
+from reference_geometries import GEOMETRIES
+
+from orbiframe import FormatError, GeometryError, PluginError, Registry, UsageError, Word
+from orbiframe.groups import orbifold_group
+from orbiframe.words import Signature
 
 S2, E2, H2 = GEOMETRIES
 GEOMETRY = {1: S2, 0: E2, -1: H2}
@@ -393,9 +385,8 @@ def test_the_same_picture_gives_the_same_bytes_in_every_format(text, tmp_path):
 
 
 def test_an_image_in_svg_is_the_image():
-    from PIL import Image
-
     from orbiframe_drawing.svg import _png
+    from PIL import Image
 
     colours = np.random.default_rng(0).integers(0, 256, (7, 5, 4), dtype=np.uint8)
     assert (np.asarray(Image.open(io.BytesIO(_png(colours)))) == colours).all()

@@ -6,26 +6,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-from orbiframe import (
-    Config,
-    Polyhedron,
-    Registry,
-    Tessellation,
-    Word,
-    cell_triangulation,
-    cut_picture,
-    fit,
-    formats,
-    poisson_disc,
-    surface_picture,
-    tessellation_picture,
-)
 from orbiframe_drawing.picture import Raster
 from orbiframe_drawing.solid import Solid3D
+from orbiframe_drawing.solid_picture import cut_picture, surface_picture
+from orbiframe_drawing.tessellation import Tessellation
+from orbiframe_drawing.tessellation_picture import tessellation_picture
+
+from orbiframe import Config, Polyhedron, Registry, Word, fit, formats
+from orbiframe.delaunay import cell_triangulation, poisson_disc
 from orbiframe.words.word import text_of
 
-DATASETS = Path(__file__).parents[2] / "datasets"
+DATASETS = Path(__file__).parents[3] / "datasets"
 REGISTRY = Registry.discover()
 
 

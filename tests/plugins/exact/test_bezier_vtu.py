@@ -7,7 +7,7 @@ import pytest
 from exact_surfaces import surface_of
 from orbiframe_exact.bezier_vtu import quadrilateral_order, triangle_order, write_bezier_vtu
 
-from orbiframe import patches_of
+from orbiframe.surfaces import patches_of
 from orbiframe.testing import contract_tests
 
 vtk = pytest.importorskip("vtk", reason="VTK evaluates the cells")

@@ -14,9 +14,10 @@ from fitted import config, mesh_of
 from scipy.spatial import cKDTree
 from spline_checks import quadrature
 
-from orbiframe import PeriodicPatch, Registry, patches_of
-from orbiframe.files import gate as formats
+from orbiframe import Registry
+from orbiframe.files import gate
 from orbiframe.fitting import pipeline
+from orbiframe.surfaces import PeriodicPatch, patches_of
 from orbiframe.testing import contract_tests
 
 pytest.importorskip("OCP", reason='Open CASCADE is the extra "orbiframe[cad]"')
@@ -189,6 +190,6 @@ def test_an_exporter_is_found_by_its_suffix(tmp_path):
     registry = Registry.discover()
     surface = surface_of("torus", "tensor-bspline", counts=(4, 4))
     for name in ("a.stp", "a.STEP", "a.igs"):
-        formats.export(tmp_path / name, surface, registry)
+        gate.export(tmp_path / name, surface, registry)
         assert (tmp_path / name).stat().st_size > 1000
-    assert not formats.exports(tmp_path / "a.ply", registry)
+    assert not gate.exports(tmp_path / "a.ply", registry)

@@ -1,4 +1,4 @@
-"""The contract of E2; what is special to it stands in tests/kernel/test_geometry.py."""
+"""The contract of E2; what is special to it stands in tests/planes/test_geometry.py."""
 
 from orbiframe_geometries.e2 import E2
 

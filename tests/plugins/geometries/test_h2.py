@@ -1,4 +1,4 @@
-"""The contract of H2; what is special to it stands in tests/kernel/test_geometry.py."""
+"""The contract of H2; what is special to it stands in tests/planes/test_geometry.py."""
 
 from orbiframe_geometries.h2 import H2
 

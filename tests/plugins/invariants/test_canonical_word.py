@@ -5,19 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
+from orbiframe_invariants.canonical_word import canonical_form, substituted
+from orbiframe_invariants.named_words import klein_quartic, opposite_sides, word_named
 from reference_geometries import GEOMETRIES
 
-from orbiframe import (
-    PolygonGroup,
-    TopologyError,
-    Word,
-    canonical_form,
-    klein_quartic,
-    opposite_sides,
-    regular_polygon,
-    word_named,
-)
-from orbiframe_invariants.canonical_word import substituted
+from orbiframe import TopologyError, Word
+from orbiframe.groups import PolygonGroup, regular_polygon
 from orbiframe.groups.corner_elements import corner_elements
 from orbiframe.words.word import inverse_letters
 

@@ -6,12 +6,15 @@ import numpy as np
 import pytest
 from orbiframe_groups.finite import FiniteGroup
 from orbiframe_groups.lattice import lattice_group
+from orbiframe_invariants.closed_geodesics import length_spectrum, systole
 from reference_geometries import GEOMETRIES
 from scipy.integrate import quad
 
-from orbiframe import GeometryError, PolygonGroup, Word, length_spectrum, regular_polygon, standard_word, systole
-from orbiframe.words.conway_symbol import Signature
+from orbiframe import GeometryError, Word
+from orbiframe.groups import PolygonGroup, regular_polygon
 from orbiframe.groups.conway_group import orbifold_group
+from orbiframe.words import standard_word
+from orbiframe.words.conway_symbol import Signature
 
 S2, E2, H2 = GEOMETRIES
 

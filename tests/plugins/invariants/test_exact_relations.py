@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from orbiframe_geometries.h2 import H2
-
-from orbiframe_invariants.named_words import word_named
-from orbiframe.errors import GeometryError
 from orbiframe_invariants.exact_relations import ExactElement, ExactNumber, ExactRing, exact_pairings, prove_relations
+from orbiframe_invariants.named_words import word_named
+
+from orbiframe.errors import GeometryError
 from orbiframe.groups.fundamental_polygon import regular_polygon
 from orbiframe.planes.precise_isometry import Spin
 from orbiframe.words.word import Word, standard_word

@@ -10,9 +10,12 @@ import reference_surfaces as surfaces
 from hypothesis import given, settings, strategies as st
 from orbiframe_groups.finite import FiniteGroup
 from orbiframe_groups.lattice import lattice_group
+from orbiframe_invariants.geodesics import Geodesics
 from reference_geometries import GEOMETRIES
 
-from orbiframe import Geodesics, GeometryError, Points, PolygonGroup, Spin, Word, regular_polygon
+from orbiframe import GeometryError, Points, Word
+from orbiframe.groups import PolygonGroup, regular_polygon
+from orbiframe.planes import Spin
 from orbiframe.testing.reference import reference_triangulations
 
 S2, E2, H2 = GEOMETRIES

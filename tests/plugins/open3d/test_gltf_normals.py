@@ -10,7 +10,7 @@ import pytest
 from exact_surfaces import surface_of
 
 from orbiframe import Points, Registry
-from orbiframe.files import gate as formats
+from orbiframe.files import gate
 
 pytest.importorskip("open3d", reason='glTF needs the extra "orbiframe[open3d]"')
 
@@ -43,7 +43,7 @@ def test_normals_are_those_of_the_surface(name, tmp_path):
     """They are unit vectors, and orthogonal to the surface: equal to its unit normals, up to the side."""
     surface = surface_of(name, "ps2")
     mesh = surface.tessellate(1)
-    formats.write(tmp_path / "shape.glb", mesh, Registry.discover())
+    gate.write(tmp_path / "shape.glb", mesh, Registry.discover())
     found = parsed(tmp_path / "shape.glb")
     assert np.array_equal(found["indices"].reshape(-1, 3), mesh.triangles)
     assert np.abs(found["POSITION"] - mesh.vertices).max() < 1e-6

@@ -9,7 +9,7 @@ from orbiframe_parametrizers.double_cover import double_cover
 from reference_meshes import connected_sum, dataset, grid, reference, shuffled
 
 from orbiframe import surface_type
-from orbiframe.meshes.surface_type import require_closed_surface
+from orbiframe.meshes.defects import require_closed_surface
 
 
 def check(mesh):

@@ -18,11 +18,12 @@ from orbiframe_parametrizers.unfolding import unfolded
 from reference_meshes import connected_sum, dataset, edge_lengths, geometry, grid, reference
 from scipy.optimize import minimize
 
-from orbiframe import MapError, MarkedGroup, Polyhedron, surface_type
-from orbiframe.meshes.bisection import bisected, edge_length_for
+from orbiframe import MapError, Polyhedron, surface_type
+from orbiframe.groups import MarkedGroup
 from orbiframe.groups.corner_elements import products_of_pairings
+from orbiframe.meshes.bisection import bisected, edge_length_for
 from orbiframe.meshes.face_diagonals import triangulated
-from orbiframe.meshes.surface_type import vector_areas
+from orbiframe.meshes.sizes import vector_areas
 
 
 def plate(genus: int, parts: int = 1) -> Polyhedron:

@@ -13,10 +13,12 @@ from orbiframe_parametrizers.sphere import sphere
 from reference_meshes import edge_lengths, geometry
 from signed_faces import WORDS, fan, wandering
 
-from orbiframe import MapError, bisected, crowding_of, doubled_edges, surface_type
+from orbiframe import MapError, surface_type
+from orbiframe.meshes import bisected, doubled_edges
 from orbiframe.meshes.bisection import edge_length_for
 from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.triangulations import crowding_of
 from orbiframe.triangulations.triangulation import Triangulation
 
 pytestmark = pytest.mark.filterwarnings("ignore::RuntimeWarning")

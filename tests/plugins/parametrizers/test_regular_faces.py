@@ -19,15 +19,16 @@ from orbiframe_parametrizers.vertex_scaling import scaled
 from reference_meshes import DATASETS, REGISTRY, connected_sum, dataset, geometry, klein_quartic
 
 from orbiframe import MapError, Polyhedron
+from orbiframe.files.gate import read
 from orbiframe.meshes.bisection import bisected
 from orbiframe.meshes.face_diagonals import outline, triangulated
-from orbiframe.triangulations.face_shapes import face_shapes
-from orbiframe.files.gate import read
+from orbiframe.meshes.orientation import oriented
 from orbiframe.meshes.regular_triangles import regular_triangles
+from orbiframe.meshes.surface_type import surface_type
 from orbiframe.testing.optimizer_laws import distortion
 from orbiframe.testing.parametrizer_laws import edge_lengths
 from orbiframe.testing.reference import reference_triangulations
-from orbiframe.meshes.surface_type import oriented, surface_type
+from orbiframe.triangulations.face_shapes import face_shapes
 
 EQUILATERAL = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(0.75)]])
 

@@ -23,8 +23,9 @@ from reference_meshes import (
     shuffled,
 )
 
-from orbiframe import MapError, MarkedGroup
-from orbiframe.meshes.surface_type import reversed_faces
+from orbiframe import MapError
+from orbiframe.groups import MarkedGroup
+from orbiframe.meshes.orientation import reversed_faces
 
 CENTRAL_ANGLE = {
     "tetrahedron": np.arccos(-1 / 3),

@@ -9,8 +9,8 @@ from orbiframe_parametrizers.vertex_scaling import scaled
 from orbiframe import MapError, Polyhedron
 from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.meshes.subdivision import refine
-from orbiframe.testing.polyhedra import reference_polyhedra
 from orbiframe.meshes.surface_type import surface_type
+from orbiframe.testing.polyhedra import reference_polyhedra
 
 HYPERBOLIC = sorted(name for name, p in reference_polyhedra().items() if surface_type(p).euler_characteristic < 0)
 

@@ -13,9 +13,9 @@ from hypothesis import given, settings, strategies as st
 from orbiframe_polygons import floats, lines, text, weld
 
 from orbiframe import FormatError, Polyhedron
-from orbiframe.files import gate as formats
-from orbiframe.meshes import polyhedron
 from orbiframe.components.registry import Registry
+from orbiframe.files import gate
+from orbiframe.meshes import polyhedron
 
 REGISTRY = Registry.discover()
 SWITCHES = [(floats, "LARGE"), (text, "LARGE"), (lines, "LARGE"), (weld, "LARGE"), (polyhedron, "LARGE")]
@@ -131,7 +131,7 @@ def answer(path) -> object:
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
         try:
-            found = formats.read(path, REGISTRY)
+            found = gate.read(path, REGISTRY)
         except FormatError as error:
             return str(error)
     return (
@@ -159,23 +159,24 @@ def test_a_large_file_is_written_and_read_by_the_compiled_ways(tmp_path):
     made = Polyhedron.from_faces(rng.normal(size=(size * size, 3)), quads)
     assert made.vertices.size + made.tail.size > lines.LARGE
     for suffix in (".off", ".obj"):
-        formats.write(tmp_path / f"a{suffix}", made, REGISTRY)
+        gate.write(tmp_path / f"a{suffix}", made, REGISTRY)
         assert (tmp_path / f"a{suffix}").stat().st_size > text.LARGE
-        found = formats.read(tmp_path / f"a{suffix}", REGISTRY)
+        found = gate.read(tmp_path / f"a{suffix}", REGISTRY)
         assert np.array_equal(found.vertices, made.vertices)
         assert np.array_equal(found.tail, made.tail)
     content = (tmp_path / "a.off").read_bytes()
     (tmp_path / "bad.off").write_bytes(content[:-3_000_000] + b"x" + content[-3_000_000:])
     line = content[:-3_000_000].count(b"\n") + 1
     with pytest.raises(FormatError, match=f"line {line}: found"):
-        formats.read(tmp_path / "bad.off", REGISTRY)
+        gate.read(tmp_path / "bad.off", REGISTRY)
 
 
 def test_small_files_need_no_compiler(tmp_path):
-    formats.write(tmp_path / "a.off", Polyhedron.from_faces(np.eye(3), [[0, 1, 2]]), REGISTRY)
+    gate.write(tmp_path / "a.off", Polyhedron.from_faces(np.eye(3), [[0, 1, 2]]), REGISTRY)
     code = (
-        "import sys; from pathlib import Path; from orbiframe import formats; from orbiframe.components.registry import Registry\n"
-        f"formats.read(Path({str(tmp_path / 'a.off')!r}), Registry.discover())\n"
+        "import sys; from pathlib import Path; from orbiframe.files import gate; "
+        "from orbiframe.components.registry import Registry\n"
+        f"gate.read(Path({str(tmp_path / 'a.off')!r}), Registry.discover())\n"
         "assert 'numba' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from orbiframe.errors import FormatError, UsageError
 from orbiframe.components.registry import Registry
+from orbiframe.errors import FormatError, UsageError
 
 
 def require_destination(path: Path, registry: Registry, format: str | None = None, *, kind: str = "writer") -> None:
@@ -19,6 +19,18 @@ def require_destination(path: Path, registry: Registry, format: str | None = Non
     name = component_name(path, registry, kind, format)
     if kind == "exporter":
         registry.load(kind, name)  # a missing library is found before the fit, not after it
+
+
+def require_picture(path: Path, name: str, registry: Registry) -> None:
+    """Raise UsageError unless the picture can have the suffix of the file, FormatError where the place is unfit.
+
+    Raises PluginError where what draws it cannot be imported.
+    """
+    suffixes = registry.component("picture", name).suffixes
+    require_folder(path)
+    if path.suffix.lower() not in suffixes:
+        raise UsageError(f"{path} is no file for a picture; give it the suffix {', '.join(suffixes)}")
+    registry.load("picture", name)
 
 
 def _require_writer(path: Path, registry: Registry) -> None:

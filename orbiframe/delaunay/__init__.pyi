@@ -1,0 +1,16 @@
+"""The public names of orbiframe.delaunay, each with the module it lives in."""
+
+from .polygon_fan import cell_triangulation as cell_triangulation
+from .site_triangulation import (
+    SiteTriangulation as SiteTriangulation,
+    delaunay as delaunay,
+    delaunay_of_vertices as delaunay_of_vertices,
+)
+from .sites import (
+    lloyd as lloyd,
+    poisson_disc as poisson_disc,
+    uniform_points as uniform_points,
+    vertex_points as vertex_points,
+)
+from .spline_domain import domain_for as domain_for, spline_domain as spline_domain
+from .voronoi import cell_areas as cell_areas, circumcentres as circumcentres, circumradii as circumradii

@@ -1,0 +1,25 @@
+"""The public names of orbiframe.meshes, each with the module it lives in."""
+
+from .bisection import Bisection as Bisection, bisected as bisected
+from .defects import require_closed_surface as require_closed_surface
+from .edge_paths import (
+    Graph as Graph,
+    Spacing as Spacing,
+    covering_points as covering_points,
+    curve_order as curve_order,
+    dijkstra_forest as dijkstra_forest,
+    edge_graph as edge_graph,
+    farthest_points as farthest_points,
+    joining_edges as joining_edges,
+)
+from .face_diagonals import outline as outline, triangulated as triangulated
+from .fans import fan_labels as fan_labels
+from .orientation import oriented as oriented, reversed_faces as reversed_faces
+from .polyhedron import Polyhedron as Polyhedron
+from .subdivision import Refinement as Refinement, refine as refine
+from .surface_type import (
+    SurfaceType as SurfaceType,
+    doubled_edges as doubled_edges,
+    surface_type as surface_type,
+    without_unused_vertices as without_unused_vertices,
+)
