@@ -1,4 +1,4 @@
-"""Reading and writing a million triangles, side by side with meshio and Open3D: `python benchmarks/gate.py`.
+"""Reading and writing a million triangles, side by side with meshio and Open3D: `python benchmarks/formats.py`.
 
 Each number is megabytes of the file for a second, the best of some runs with the file in the memory of the system and
 all code loaded; `--memory` shows instead the most memory that a reader takes, in times of the arrays of its result.

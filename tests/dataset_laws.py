@@ -8,9 +8,10 @@ from functools import cache, cached_property, partial
 from pathlib import Path
 
 from orbiframe import Triangulation
+from orbiframe.components.geometry_names import geometry_name
 from orbiframe.components.registry import Registry
 from orbiframe.files import gate
-from orbiframe.fitting.pipeline import GEOMETRY, PARAMETRIZER
+from orbiframe.fitting.pipeline import PARAMETRIZER
 from orbiframe.meshes.defects import require_closed_surface
 from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.meshes.orientation import oriented
@@ -50,7 +51,7 @@ def mapped(surface: str) -> Triangulation:
     """The map of a dataset to X/H, as coarse as its mesh is."""
     mesh = oriented(gate.read(FOLDER / f"{surface}.off", REGISTRY))
     chi = require_closed_surface(mesh).euler_characteristic
-    geometry = GEOMETRY[(chi > 0) - (chi < 0)]
+    geometry = geometry_name(chi)
     parametrizer = REGISTRY.load("parametrizer", PARAMETRIZER[geometry])
     made: Triangulation = parametrizer(triangulated(mesh), REGISTRY.load("geometry", geometry)(), None)
     return made

@@ -1,7 +1,7 @@
 """The public names of orbiframe.meshes, each with the module it lives in."""
 
 from .bisection import Bisection as Bisection, bisected as bisected
-from .defects import require_closed_surface as require_closed_surface
+from .defects import Defect as Defect, defects as defects, require_closed_surface as require_closed_surface
 from .edge_paths import (
     Graph as Graph,
     Spacing as Spacing,
@@ -16,6 +16,14 @@ from .face_diagonals import outline as outline, triangulated as triangulated
 from .fans import fan_labels as fan_labels
 from .orientation import oriented as oriented, reversed_faces as reversed_faces
 from .polyhedron import Polyhedron as Polyhedron
+from .repair import (
+    component as component,
+    drop_degenerate as drop_degenerate,
+    orient as orient,
+    split_nonmanifold_vertices as split_nonmanifold_vertices,
+    triangulate as triangulate,
+    weld as weld,
+)
 from .subdivision import Refinement as Refinement, refine as refine
 from .surface_type import (
     SurfaceType as SurfaceType,

@@ -7,7 +7,7 @@ import tracemalloc
 
 import pytest
 from documents import ROOT
-from plugins.test_compiled_texts import SWITCHES
+from reader_switches import SWITCHES
 
 from orbiframe.files import gate
 

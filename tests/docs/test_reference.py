@@ -19,6 +19,7 @@ from orbiframe.components.registry import Registry
 from orbiframe.files import gate
 from orbiframe.fitting import pipeline
 from orbiframe.fitting.config import OPEN_NAMES, STEPS, Config, Output
+from orbiframe.plugin import DEFAULT_MARKER
 
 REFERENCE = ROOT / "docs" / "reference"
 
@@ -62,7 +63,7 @@ def test_every_option_of_a_table_is_in_its_section(table, registry):
 
 def _defaults(kind: str, name: str, registry: Registry) -> dict[str, str]:
     """The options of the default component of a step; of all that the pipeline may choose, where it is open."""
-    choices = {"parametrizer": list(pipeline.PARAMETRIZER.values()), "marker": [pipeline.MARKER]}
+    choices = {"parametrizer": list(pipeline.PARAMETRIZER.values()), "marker": [DEFAULT_MARKER]}
     chosen = choices.get(kind, []) if name in OPEN_NAMES else [name]
     return {o.name: str(o.default) for name in chosen for o in options_of(registry.load(kind, name))}
 
@@ -105,7 +106,7 @@ def test_every_suffix_is_in_the_table_of_formats(registry):
 
 
 def test_every_exporter_is_in_the_table_of_exact_formats(registry):
-    rows = table_rows(section(REFERENCE / "gate.md", "Exact formats"))
+    rows = table_rows(section(REFERENCE / "formats.md", "Exact formats"))
     shown = [(unquoted(name), tuple(unquoted(suffixes).split()), unquoted(needs)) for name, suffixes, needs, _ in rows]
     declared = [(c.name, c.suffixes, c.extra or "–") for c in registry.components("exporter")]
     assert sorted(shown) == sorted(declared)
@@ -137,7 +138,7 @@ def test_a_format_of_triangles_refuses_polygons(name, registry, tmp_path):
 
 
 def _formats() -> list[list[str]]:
-    return table_rows(section(REFERENCE / "gate.md", "Formats"))
+    return table_rows(section(REFERENCE / "formats.md", "Formats"))
 
 
 def test_every_key_of_the_report_is_in_its_table(registry):

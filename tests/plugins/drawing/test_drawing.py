@@ -374,7 +374,7 @@ def test_the_same_picture_gives_the_same_bytes_in_every_format(text, tmp_path):
     group = group_of(text)
     for suffix in (".svg", ".png", ".pdf"):
         for name in ("one", "two"):
-            draw_group(group, tmp_path / f"{name}{suffix}", tiles=2)
+            draw_group(tmp_path / f"{name}{suffix}", group, tiles=2)
         assert (tmp_path / f"one{suffix}").read_bytes() == (tmp_path / f"two{suffix}").read_bytes()
     ElementTree.parse(tmp_path / "one.svg")
     assert (tmp_path / "one.png").read_bytes().startswith(b"\x89PNG")

@@ -12,7 +12,7 @@ from orbiframe_drawing.solid_picture import cut_picture, surface_picture
 from orbiframe_drawing.tessellation import Tessellation
 from orbiframe_drawing.tessellation_picture import tessellation_picture
 
-from orbiframe import Config, Polyhedron, Registry, Word, fit, formats
+from orbiframe import Config, Polyhedron, Registry, Word, fit, read
 from orbiframe.delaunay import cell_triangulation, poisson_disc
 from orbiframe.words.word import text_of
 
@@ -22,7 +22,7 @@ REGISTRY = Registry.discover()
 
 @pytest.fixture(scope="module")
 def plate():
-    polyhedron = formats.read(DATASETS / "plate_genus2_coarse.off", REGISTRY)
+    polyhedron = read(DATASETS / "plate_genus2_coarse.off", REGISTRY)
     return polyhedron, fit(polyhedron, Config.load(overrides=["basis.size=60"]), REGISTRY).surface
 
 
@@ -70,7 +70,7 @@ def test_another_middle_moves_the_tessellation(tessellation, plate):
 
 @pytest.mark.parametrize("name", ["torus", "klein_bottle", "projective_plane", "sphere"])
 def test_tessellations_of_other_surfaces_have_one_lift_of_every_face(name):
-    polyhedron = formats.read(DATASETS / f"{name}.off", REGISTRY)
+    polyhedron = read(DATASETS / f"{name}.off", REGISTRY)
     surface = fit(polyhedron, Config.load(overrides=["basis.size=50"]), REGISTRY).surface
     found = Tessellation.of_map(polyhedron, surface.refinement, surface.triangulation)
     home = [c.corners[c.home] for c in found.copies(4.0)]

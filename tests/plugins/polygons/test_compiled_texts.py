@@ -11,6 +11,7 @@ import pytest
 from corpus.bad_files import cases
 from hypothesis import given, settings, strategies as st
 from orbiframe_polygons import floats, lines, text, weld
+from reader_switches import SWITCHES
 
 from orbiframe import FormatError, Polyhedron
 from orbiframe.components.registry import Registry
@@ -18,7 +19,6 @@ from orbiframe.files import gate
 from orbiframe.meshes import polyhedron
 
 REGISTRY = Registry.discover()
-SWITCHES = [(floats, "LARGE"), (text, "LARGE"), (lines, "LARGE"), (weld, "LARGE"), (polyhedron, "LARGE")]
 
 DIGITS = st.text("0123456789", max_size=25)
 DECIMALS = st.builds(
