@@ -18,7 +18,7 @@ def description(polyhedron: Polyhedron) -> dict[str, Any]:
     import numpy as np
 
     from orbiframe.meshes import sizes as measure
-    from orbiframe.meshes.defects import defects
+    from orbiframe.meshes.defects import defects_of
     from orbiframe.meshes.surface_type import surface_type
 
     surface = surface_type(polyhedron)
@@ -39,7 +39,7 @@ def description(polyhedron: Polyhedron) -> dict[str, Any]:
         "volume": measure.signed_volume(polyhedron),
         "edge_lengths": {name: float(find(lengths)) for name, find in _spread(np)},
         "valences": {name: float(find(valences)) for name, find in _spread(np)},
-        "defects": [asdict(defect) for defect in defects(polyhedron)],
+        "defects": [asdict(defect) for defect in defects_of(polyhedron)],
         "notes": [asdict(note) for note in measure.notes(polyhedron)],
     }
 

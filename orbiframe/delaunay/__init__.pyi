@@ -12,5 +12,5 @@ from .sites import (
     uniform_points as uniform_points,
     vertex_points as vertex_points,
 )
-from .spline_domains import domain_for as domain_for, spline_domain as spline_domain
+from .spline_domain import domain_for as domain_for
 from .voronoi import cell_areas as cell_areas, circumcentres as circumcentres, circumradii as circumradii

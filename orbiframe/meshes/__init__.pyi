@@ -1,7 +1,7 @@
 """The public names of orbiframe.meshes, each with the module it lives in."""
 
 from .bisection import Bisection as Bisection, bisected as bisected
-from .defects import Defect as Defect, defects as defects, require_closed_surface as require_closed_surface
+from .defects import Defect as Defect, defects_of as defects_of, require_closed_surface as require_closed_surface
 from .edge_paths import (
     Graph as Graph,
     Spacing as Spacing,
@@ -28,6 +28,5 @@ from .subdivision import Refinement as Refinement, refine as refine
 from .surface_type import (
     SurfaceType as SurfaceType,
     doubled_edges as doubled_edges,
-    surface_type as surface_type,
     without_unused_vertices as without_unused_vertices,
 )

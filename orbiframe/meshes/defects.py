@@ -52,7 +52,7 @@ class Defect:
         return f"{self.count} {kind}"
 
 
-def defects(polyhedron: Polyhedron) -> list[Defect]:
+def defects_of(polyhedron: Polyhedron) -> list[Defect]:
     """Everything that keeps a polyhedron from being one closed connected surface, or that a user should know of."""
     joints = seams(polyhedron)
     found = [
@@ -76,7 +76,7 @@ def require_closed_surface(polyhedron: Polyhedron) -> SurfaceType:
     """The surface type of a polyhedron that is one closed connected surface; raises TopologyError otherwise."""
     if polyhedron.face_count == 0:
         raise TopologyError("the mesh has no faces; give a closed polyhedron")
-    fatal = [defect for defect in defects(polyhedron) if defect.fatal]
+    fatal = [defect for defect in defects_of(polyhedron) if defect.fatal]
     if fatal:
         reasons = "; ".join(f"{defect} ({defect.where})" for defect in fatal)
         advice = _advice(fatal) + (_SHARED_ENDS if _may_share_ends(polyhedron) else "")

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from orbiframe import surface_type
-from orbiframe.meshes.defects import defects
+from orbiframe.meshes.defects import defects_of
 from orbiframe.meshes.polyhedron import Polyhedron
 
 FOLDER = Path(__file__).parents[2] / "datasets"
@@ -66,7 +66,7 @@ def test_index_describes_the_mesh(name: str) -> None:
     assert (len(mesh.vertices), mesh.edge_count, mesh.face_count) == (entry["vertices"], entry["edges"], entry["faces"])
     assert (found.closed, found.components, found.orientable) == (True, 1, entry["orientable"])
     assert found.genus == entry["genus" if entry["orientable"] else "crosscaps"]
-    assert not defects(mesh)
+    assert not defects_of(mesh)
 
 
 @pytest.mark.parametrize("name", [name for name, entry in INDEX.items() if entry["orientable"]])

@@ -11,7 +11,7 @@ from orbiframe.delaunay.point_walk import locate
 from orbiframe.delaunay.polygon_fan import cell_triangulation
 from orbiframe.delaunay.site_triangulation import delaunay
 from orbiframe.delaunay.sites import lloyd, poisson_disc, uniform_points
-from orbiframe.delaunay.spline_domains import spline_domain
+from orbiframe.delaunay.spline_domain import spline_domain
 from orbiframe.delaunay.voronoi import cell_areas, circumcentres, kites
 from orbiframe.errors import FitError, MapError
 from orbiframe.orbifolds.atlas import Points

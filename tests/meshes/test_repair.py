@@ -12,7 +12,7 @@ from random_polyhedra import NAMES, face_lists, grown, random_polyhedra
 
 from orbiframe.errors import TopologyError, UsageError
 from orbiframe.meshes import repair
-from orbiframe.meshes.defects import defects, require_closed_surface
+from orbiframe.meshes.defects import defects_of, require_closed_surface
 from orbiframe.meshes.flat_faces import simple_loops
 from orbiframe.meshes.open_edges import open_halfedges, seams
 from orbiframe.meshes.orientation import oriented, reversed_faces
@@ -46,7 +46,7 @@ def geometry_of(mesh: Polyhedron) -> Counter[frozenset[tuple[float, ...]]]:
 
 
 def kinds(mesh: Polyhedron) -> set[str]:
-    return {defect.kind for defect in defects(mesh)}
+    return {defect.kind for defect in defects_of(mesh)}
 
 
 # ---- weld -----------------------------------------------------------------------------------------------------------

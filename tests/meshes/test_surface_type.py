@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings, strategies as st
 from random_polyhedra import NAMES, edges_of, face_lists, grown, random_polyhedra, relabelled
 
 from orbiframe.errors import TopologyError
-from orbiframe.meshes.defects import defects, require_closed_surface
+from orbiframe.meshes.defects import defects_of, require_closed_surface
 from orbiframe.meshes.fans import fan_labels
 from orbiframe.meshes.orientation import oriented, reversed_faces
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -32,7 +32,7 @@ SEEDS = st.integers(0, 2**32 - 1)
 
 
 def found(mesh: Polyhedron) -> dict[str, tuple[int, str, bool]]:
-    return {defect.kind: (defect.count, defect.where, defect.fatal) for defect in defects(mesh)}
+    return {defect.kind: (defect.count, defect.where, defect.fatal) for defect in defects_of(mesh)}
 
 
 def random_flips(mesh: Polyhedron, seed: int) -> np.ndarray:
@@ -298,9 +298,9 @@ def test_no_faces_at_all(vertices: int) -> None:
 def test_any_face_list_is_described_without_a_crash(faces: list[list[int]]) -> None:
     mesh = Polyhedron.from_faces(np.random.default_rng(0).normal(size=(6, 3)), faces)
     kind = surface_type(mesh)
-    fatal = [defect for defect in defects(mesh) if defect.fatal]
+    fatal = [defect for defect in defects_of(mesh) if defect.fatal]
     assert kind.name
-    assert all(defect.count > 0 and defect.where and str(defect) for defect in defects(mesh))
+    assert all(defect.count > 0 and defect.where and str(defect) for defect in defects_of(mesh))
     assume(faces)
     if fatal:
         with pytest.raises(TopologyError):
