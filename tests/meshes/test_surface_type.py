@@ -155,7 +155,7 @@ def test_a_sound_polyhedron_has_no_defect_but_its_orientation(mesh: Polyhedron, 
     turned = len({frozenset((int(mixed.tail[h]), int(mixed.head[h]))) for h in np.flatnonzero(mixed.same)})
     expected = {"inconsistently oriented edges": turned} if surface_type(mesh).orientable and turned else {}
     assert {kind: count for kind, (count, _, _) in found(mixed).items()} == expected
-    assert not any(defect.fatal for defect in defects(mixed))
+    assert not any(defect.fatal for defect in defects_of(mixed))
 
 
 @settings(max_examples=20, deadline=None)
