@@ -58,11 +58,6 @@ class Samples:
         """The area that each sample stands for, (n,)."""
         return self.weights if self.area is None else self.area
 
-    @property
-    def diagonal(self) -> float:
-        """The diagonal of the box of the values that count."""
-        return float(np.linalg.norm(np.ptp(self.values[self.weights > 0], axis=0)))
-
     def take(self, chosen: Ints) -> Samples:
         """Some of the samples, in the order of the indices `chosen`."""
         points = Points(self.points.patch[chosen], self.points.x[chosen])
@@ -79,11 +74,17 @@ def _require(name: str, good: NDArray[np.bool_] | np.bool_, numbers: Floats, wha
 
 
 def coordinate_samples(triangulation: Triangulation) -> Samples:
-    """The positions in space at the vertices and the face centroids, weighted by area in space.
+    """The positions in space at the vertices and the face centroids that have some area, weighted by area in space.
 
     A vertex has a twelfth of the area of each of its triangles, a centroid three quarters: exact for quadratic
     functions on each triangle. The stretch at a vertex is that of its faces together.
     """
+    samples = places(triangulation)
+    return samples.take(np.flatnonzero(samples.weights > 0))
+
+
+def places(triangulation: Triangulation) -> Samples:
+    """The same at all vertices, then all centroids, those without area too."""
     mesh = triangulation.polyhedron
     area = np.linalg.norm(vector_areas(mesh), axis=1)
     count = len(mesh.vertices)
@@ -97,5 +98,4 @@ def coordinate_samples(triangulation: Triangulation) -> Samples:
     weights = np.concatenate([around / 12, 0.75 * area])
     tiny = np.finfo(float).tiny
     stretch = np.concatenate([image / np.maximum(around, tiny), triangulation.areas / np.maximum(area, tiny)])
-    kept = weights > 0
-    return Samples(Points(points.patch[kept], points.x[kept]), values[kept], weights[kept], stretch[kept])
+    return Samples(points, values, weights, stretch)
