@@ -30,7 +30,7 @@ class NearestPoints:
         open_, count = np.arange(len(points)), min(_FIRST, len(self._corners))
         while len(open_):
             away, face = self._tree.query(points[open_], k=count)
-            away, face = away.reshape(len(open_), -1), face.reshape(len(open_), -1)
+            away, face = (np.reshape(part, (len(open_), -1)) for part in (away, face))
             found[open_] = _least(points[open_], self._corners, face)
             certain = (found[open_] <= away[:, -1] - self._radius) | (count == len(self._corners))
             open_, count = open_[~certain], min(4 * count, len(self._corners))
