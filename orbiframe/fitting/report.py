@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import platform
 from importlib.metadata import PackageNotFoundError, version
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.fitting.accuracy import Accuracy
+from orbiframe.fitting.approximation import Approximation
 from orbiframe.fitting.config import Config
-from orbiframe.functions.samples import Samples
 from orbiframe.meshes.face_diagonals import RULE
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
@@ -23,26 +24,18 @@ from orbiframe.triangulations.triangulation import Triangulation
 _PACKAGES = ("orbiframe", "numpy", "scipy", "numba")
 
 
-class Deviation(NamedTuple):
-    """Root mean square and largest distance of the surface from the mesh, relative to the bounding box's diagonal."""
-
-    rms: float
-    max: float
-
-
 def report(
     surface: OrbifoldSurface,
     surface_type: SurfaceType,
     polyhedron: Polyhedron,
     config: Config,
-    samples: Samples,
-    deviation: Deviation,
-    faces: tuple[FaceShapes, FaceShapes | None],
+    found: Approximation,
     output: Polyhedron,
     seconds: dict[str, float],
 ) -> dict[str, Any]:
     """All that a user should know of a fit, with plain numbers and strings only."""
     triangulation = surface.triangulation
+    rms, largest = found.accuracy.against(found.meaning.smooth)
     return {
         "surface": {
             "name": surface_type.name,
@@ -59,14 +52,23 @@ def report(
             "relation_defect": triangulation.relation_defect,
         },
         "map": _map_report(triangulation),
-        "faces": _faces_report(*faces),
+        "faces": _faces_report(*found.mapped.face_shapes(polyhedron)),
+        "data": {
+            "means": found.meaning.name,
+            "reason": found.meaning.reason,
+            "bend_share": found.meaning.bend_share,
+            "girth_energy": found.energy,
+        },
         "fit": {
             "basis": config.basis.name,
+            "fitter": config.fitter.name,
             "size": surface.basis.size,
-            "samples": len(samples.weights),
-            "rms": deviation.rms,
-            "max": deviation.max,
+            "samples": int((found.samples.weights > 0).sum()),
+            "rms": rms,
+            "max": largest,
         },
+        "distance": _distances_report(found.accuracy, surface),
+        "notes": list(found.notes),
         "output": {
             "vertices": len(output.vertices),
             "faces": output.face_count,
@@ -80,6 +82,24 @@ def report(
 def _faces_report(now: FaceShapes, before: FaceShapes | None) -> dict[str, Any]:
     """The shapes of the faces of the polyhedron in X, and before an optimizer changed them, if one did."""
     return {**now.summary(), "before": None if before is None else before.summary()}
+
+
+def _distances_report(accuracy: Accuracy, surface: OrbifoldSurface) -> dict[str, Any]:
+    """Distances in diagonals, with the places in the coordinates of the mesh where they are largest."""
+    named = {
+        "mesh_to_surface": accuracy.to_surface,
+        "surface_to_mesh": accuracy.to_mesh,
+        "vertices_to_surface": accuracy.vertices,
+    }
+    return {
+        name: {
+            "rms": part.rms,
+            "mean": part.mean,
+            "max": part.max,
+            "place": [float(x) for x in surface.origin + surface.scale * np.array(part.place)],
+        }
+        for name, part in named.items()
+    }
 
 
 def _cut_report(polyhedron: Polyhedron) -> dict[str, Any]:
