@@ -110,6 +110,7 @@ def _arrays(surface: OrbifoldSurface) -> dict[str, Any]:
         "patch": triangulation.patch,
         "points": triangulation.points,
         "transition": triangulation.transition,
+        **({} if triangulation.density is None else {"density": triangulation.density}),
         "area": np.array(orbifold.area),
         "coefficients": surface.coefficients,
         "origin": surface.origin,
@@ -129,6 +130,7 @@ def _triangulation(arrays: Arrays, about: Mapping[str, Any], registry: Component
         arrays["transition"],
         about["group"],
         about["weights"],
+        arrays.get("density"),
     )
 
 

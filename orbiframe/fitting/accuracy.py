@@ -10,15 +10,18 @@ from numpy.typing import NDArray
 
 from orbiframe.errors import FitError
 from orbiframe.functions.basis import DifferentiableBasis
-from orbiframe.functions.foot_points import foot_points
+from orbiframe.functions.foot_points import foot_points, foot_step
 from orbiframe.functions.samples import Samples, places
 from orbiframe.meshes.nearest_points import NearestPoints
+from orbiframe.meshes.sizes import vector_areas
 from orbiframe.surfaces.surface import OrbifoldSurface
 
 Floats = NDArray[np.float64]
 
 # A surface that leaves the ball about the mesh by more than its radius is no approximation.
 _TOO_FAR = 1.0
+# Feet farther than this share of the spacing of functions, and this share of all that are worst, are found exactly.
+_NEAR, _WORST = 0.1, 0.01
 
 
 class Distances(NamedTuple):
@@ -31,14 +34,16 @@ class Distances(NamedTuple):
 
 
 class Accuracy(NamedTuple):
-    """Distances of the facets to the surface, of the surface to the facets, and of the vertices to the surface.
+    """Distances of the mesh to the surface, of the surface to the mesh, and of the given vertices to the surface.
 
-    at_vertices: (V,), of the vertices of the refined mesh to the surface, where functions may be missing.
+    normals: the root mean square of the angle between normals of facets and of the surface at the feet, in degrees;
+    at_vertices: (V,), the distances of the vertices of the refined mesh to the surface: where functions are missing.
     """
 
     to_surface: Distances
     to_mesh: Distances
     vertices: Distances
+    normals: float
     at_vertices: Floats
 
     def against(self, smooth: bool) -> tuple[float, float]:
@@ -50,44 +55,66 @@ class Accuracy(NamedTuple):
 def accuracy_of(surface: OrbifoldSurface) -> Accuracy:
     """The accuracy of a surface for a mesh of unit size.
 
-    Samples of the mesh go to their foot points on the surface, and points of the surface over them to the nearest point
-    of the mesh; a surface without derivatives is measured at the parameters of the samples. Raises FitError for a
+    Samples of the mesh go to their foot points on the surface, and the points of the surface over them to the nearest
+    point of the mesh; a surface without derivatives is measured at the parameters of the samples. Raises FitError for a
     surface that is worse than its own centroid.
     """
-    flat, count = surface.refinement.polyhedron, len(surface.refinement.coarse.vertices)
+    flat, given = surface.refinement.polyhedron, len(surface.refinement.coarse.vertices)
     samples = places(replace(surface.triangulation, polyhedron=flat))
-    there = surface.evaluate(samples.points)
-    _require_sane(there, samples)
-    away = _foot_distances(surface, samples, there)
+    there, away, normals = _seen(surface, samples)
+    _require_sane(there, samples.values, samples.weights)
     back = NearestPoints(flat).distance(there)
     return Accuracy(
         _distances(away, samples.weights, samples.values),
         _distances(back, samples.weights, there),
-        _distances(away[:count], samples.weights[:count], samples.values[:count]),
+        _distances(away[:given], samples.weights[:given], samples.values[:given]),
+        _tilt(normals[len(flat.vertices) :], vector_areas(flat)),
         away[: len(flat.vertices)],
     )
 
 
-def _foot_distances(surface: OrbifoldSurface, samples: Samples, there: Floats) -> Floats:
-    """The distances of samples to their foot points on the surface."""
-    if not isinstance(surface.basis, DifferentiableBasis):
-        return np.asarray(np.linalg.norm(there - samples.values, axis=1))
-    longest = float(np.sqrt(samples.weights.sum() / surface.basis.size))
-    return foot_points(surface.basis, surface.coefficients, samples.points, samples.values, longest)[1]
+def _seen(surface: OrbifoldSurface, samples: Samples) -> tuple[Floats, Floats, Floats]:
+    """The points of a surface over samples, the distances of the samples to it, and the normals at their feet.
+
+    Feet near by are found on the parabolic surface that touches at the sample, those that matter most by Newton's
+    method.
+    """
+    basis, coefficients, targets = surface.basis, surface.coefficients, samples.values
+    if not isinstance(basis, DifferentiableBasis):
+        there = surface.evaluate(samples.points)
+        return there, np.asarray(np.linalg.norm(there - targets, axis=1)), np.full(there.shape, np.nan)
+    jets = basis.jets(samples.points, coefficients, 2)
+    spacing = float(np.sqrt(samples.weights.sum() / basis.size))
+    u, v = foot_step(jets, targets, spacing).T[..., None]
+    slopes = jets[1] + u * jets[3] + v * jets[4], jets[2] + u * jets[4] + v * jets[5]
+    way = u * (jets[1] + slopes[0]) / 2 + v * (jets[2] + slopes[1]) / 2
+    away = np.linalg.norm(targets - jets[0] - way, axis=1)
+    far = (np.linalg.norm(way, axis=1) > _NEAR * spacing) | (away >= np.quantile(away, 1 - _WORST))
+    chosen = np.append(np.arange(len(surface.refinement.coarse.vertices)), np.flatnonzero(far))
+    start = samples.take(chosen)
+    away[chosen] = foot_points(basis, coefficients, start.points, start.values, spacing)[1]
+    return jets[0], away, np.cross(*slopes)
 
 
-def _require_sane(there: Floats, samples: Samples) -> None:
+def _tilt(normals: Floats, vectors: Floats) -> float:
+    """The angle between facets and the normals of the surface, up to their signs, in degrees."""
+    area, size = np.linalg.norm(vectors, axis=1), np.linalg.norm(normals, axis=1)
+    cosine = np.abs(np.einsum("fi,fi->f", normals, vectors)) / np.maximum(area * size, np.finfo(float).tiny)
+    return float(np.degrees(np.sqrt(area @ np.arccos(np.minimum(cosine, 1.0)) ** 2 / area.sum())))
+
+
+def _require_sane(there: Floats, values: Floats, weights: Floats) -> None:
     """Raises FitError for a surface that is no better than the centroid of the mesh, or far outside of the mesh."""
-    weights = samples.weights / samples.weights.sum()
-    centroid = weights @ samples.values
-    constant = float(np.sqrt(weights @ ((samples.values - centroid) ** 2).sum(axis=1)))
-    rms = float(np.sqrt(weights @ ((samples.values - there) ** 2).sum(axis=1)))
+    share = weights / weights.sum()
+    centroid = share @ values
+    constant = float(np.sqrt(share @ ((values - centroid) ** 2).sum(axis=1)))
+    rms = float(np.sqrt(share @ ((values - there) ** 2).sum(axis=1)))
     if not rms < constant:
         raise FitError(
             f"the surface is off by {rms:.2g} of the diagonal, and a single point by {constant:.2g}: so few functions "
             "do not follow this mesh; raise the option size, or choose another basis (basis.name = 'gaussian')"
         )
-    radius = float(np.linalg.norm(samples.values - centroid, axis=1).max())
+    radius = float(np.linalg.norm(values - centroid, axis=1).max())
     reached = float(np.linalg.norm(there - centroid, axis=1).max())
     if reached > (1 + _TOO_FAR) * radius:
         raise FitError(

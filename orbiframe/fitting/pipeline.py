@@ -15,6 +15,7 @@ from orbiframe.errors import TopologyError
 from orbiframe.files import gate
 from orbiframe.fitting.approximation import Approximations
 from orbiframe.fitting.config import Config
+from orbiframe.fitting.inspection import inspected
 from orbiframe.fitting.mapping import Mapping
 from orbiframe.fitting.report import report
 from orbiframe.fitting.stages import Progress, Stages
@@ -55,9 +56,18 @@ def fit(mesh: str | Path | Polyhedron, config: Config, registry: Registry, progr
     mapping = Mapping(unit, triangles, surface_type, config, stages)
     found = Approximations(mapping, config, stages).wanted()
     surface = replace(found.surface, origin=origin, scale=scale)
-    density = config.output.refine or max(1, round(np.sqrt(_OUTPUT_FACES / triangles.face_count)))
-    output = stages("tessellation", surface.tessellate, density)
-    return Result(surface, output, report(surface, surface_type, unit, config, found, output, stages.seconds))
+    output = stages("tessellation", _tessellated, surface, config.output.refine)
+    inspection = stages("inspection", inspected, surface, output, config.output.refine is None)
+    summary = report(surface, surface_type, unit, config, found, output, inspection, stages.seconds)
+    return Result(surface, output, summary)
+
+
+def _tessellated(surface: OrbifoldSurface, refine: int | None) -> Polyhedron:
+    """Every triangle of the input cut alike, or the refined mesh cut so that pictures of it are fine."""
+    if refine is not None:
+        return surface.tessellate(refine)
+    faces = surface.triangulation.polyhedron.face_count
+    return surface.tessellate(max(1, round(math.sqrt(_OUTPUT_FACES / faces))), bisected=True)
 
 
 def _read(path: Path, config: Config, registry: Registry) -> Polyhedron:

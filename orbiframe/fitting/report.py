@@ -12,12 +12,14 @@ from numpy.typing import NDArray
 from orbiframe.fitting.accuracy import Accuracy
 from orbiframe.fitting.approximation import Approximation
 from orbiframe.fitting.config import Config
+from orbiframe.fitting.inspection import Inspection
 from orbiframe.meshes.face_diagonals import RULE
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
 from orbiframe.meshes.surface_type import SurfaceType
 from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.triangulations.face_shapes import FaceShapes
+from orbiframe.triangulations.girth import girth_radius
 from orbiframe.triangulations.lost_digits import crowding_of
 from orbiframe.triangulations.triangulation import Triangulation
 
@@ -31,10 +33,12 @@ def report(
     config: Config,
     found: Approximation,
     output: Polyhedron,
+    inspection: Inspection,
     seconds: dict[str, float],
 ) -> dict[str, Any]:
     """All that a user should know of a fit, with plain numbers and strings only."""
     triangulation = surface.triangulation
+    area_in_space = float(np.linalg.norm(vector_areas(triangulation.polyhedron), axis=1).sum())
     rms, largest = found.accuracy.against(found.meaning.smooth)
     return {
         "surface": {
@@ -68,7 +72,14 @@ def report(
             "max": largest,
         },
         "distance": _distances_report(found.accuracy, surface),
-        "notes": list(found.notes),
+        "shape": {
+            "folded_share": inspection.folded,
+            "self_intersections": {"mesh": len(inspection.in_mesh), "output": len(inspection.in_output)},
+            "volume_ratio": inspection.volume,
+            "girth": girth_radius(found.mapped.triangulation),
+            "spacing": float(np.sqrt(area_in_space / surface.basis.size)),
+        },
+        "notes": [*found.notes, *inspection.notes(output)],
         "output": {
             "vertices": len(output.vertices),
             "faces": output.face_count,
@@ -99,7 +110,7 @@ def _distances_report(accuracy: Accuracy, surface: OrbifoldSurface) -> dict[str,
             "place": [float(x) for x in surface.origin + surface.scale * np.array(part.place)],
         }
         for name, part in named.items()
-    }
+    } | {"normals": accuracy.normals}
 
 
 def _cut_report(polyhedron: Polyhedron) -> dict[str, Any]:

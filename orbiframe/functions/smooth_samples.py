@@ -28,14 +28,14 @@ def vertex_samples(triangulation: Triangulation, refinement: Bisection) -> Sampl
 
     A vertex counts like a third of the area of its triangles. The length of fairness is that of the facets about.
     """
-    coarse = refinement.coarse
-    area = np.linalg.norm(vector_areas(coarse), axis=1)
-    everywhere = places(triangulation)
-    weights, values = np.zeros(len(everywhere.weights)), everywhere.values.copy()
-    weights[: len(coarse.vertices)] = _around(coarse, area / 3)
-    values[: len(coarse.vertices)] = coarse.vertices
-    length = _lengths(triangulation, refinement, _evened(coarse, area))
-    return _fair(Samples(everywhere.points, values, weights, everywhere.stretch, everywhere.weights, length, 3))
+    mesh, coarse = triangulation.polyhedron, refinement.coarse
+    area, count = np.linalg.norm(vector_areas(coarse), axis=1), len(coarse.vertices)
+    everywhere = places(triangulation).take(np.arange(len(mesh.vertices)))
+    weights, values = np.zeros(len(mesh.vertices)), mesh.vertices.copy()
+    weights[:count], values[:count] = _around(coarse, area / 3), coarse.vertices
+    share = _around(mesh, np.linalg.norm(vector_areas(mesh), axis=1) / 3)
+    length = _lengths(triangulation, refinement, _evened(coarse, area))[: len(mesh.vertices)]
+    return _fair(Samples(everywhere.points, values, weights, everywhere.stretch, share, length, 3))
 
 
 def semi_smooth_samples(triangulation: Triangulation, refinement: Bisection, spacing: float) -> Samples:

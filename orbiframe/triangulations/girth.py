@@ -42,6 +42,15 @@ def girth(triangulation: Triangulation) -> Girth:
     return Girth(slope, float(area @ square))
 
 
+def girth_radius(triangulation: Triangulation) -> float:
+    """The radius of the thinnest parts: below it |grad log s| lies on 99 % of the surface, as an inverse."""
+    slope = girth(triangulation).slope
+    area = _around(triangulation, np.linalg.norm(vector_areas(triangulation.polyhedron), axis=1))
+    order = np.argsort(slope)
+    place = np.searchsorted(np.cumsum(area[order]), 0.99 * area.sum())
+    return float(1 / max(slope[order[min(place, len(order) - 1)]], np.finfo(float).tiny))
+
+
 def site_density(triangulation: Triangulation, share: float) -> Floats:
     """How many sites there should be per length at each vertex of the mesh, (V,), up to a factor.
 

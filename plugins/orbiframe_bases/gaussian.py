@@ -37,7 +37,7 @@ class Gaussian(OrbitSumBasis):
         triangulation: Triangulation,
         *,
         size: int = 1000,
-        width: float = 1.3,
+        width: float = 1.7,
         reach: float = 2.6,
         grading: float = 0.3,
     ) -> None:
