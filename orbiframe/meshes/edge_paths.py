@@ -89,6 +89,12 @@ def farthest_points(graph: Graph, count: int, *, first: int = 0, radius: float =
     return Spacing(*_farthest(graph.start, graph.neighbour, graph.length, count, first, radius))
 
 
+def outermost_vertex(polyhedron: Polyhedron) -> int:
+    """The vertex farthest from the mean of all vertices: a tip, where farthest points may well begin."""
+    x = polyhedron.vertices
+    return int(np.argmax(np.linalg.norm(x - x.mean(axis=0), axis=1)))
+
+
 def covering_points(graph: Graph, radius: float) -> Ints:
     """Vertices at least `radius` from each other, with all other vertices nearer than that to one of them.
 

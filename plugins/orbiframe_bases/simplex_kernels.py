@@ -196,22 +196,3 @@ def evaluate(place, reach, elements, program, family, column, coefficients, valu
                     for kind in range(kinds):
                         for q in range(width):
                             values[kind, order[n], q] += out[kind] * coefficients[column[e, o], q]
-
-
-@njit(cache=True)
-def simplex_splines(program, rows, height, columns, values):  # type: ignore[no-untyped-def]
-    """The jets in R^3 of the outputs of a program for one set of knots: values (n, outputs, 1, 3, 6 or 10).
-
-    columns: (n, 3, 3), points and two directions; rows and heights of the one set.
-    """
-    start, child, orders, outputs = program
-    entries = values.shape[2]
-    jets, live = np.empty((len(orders), entries)), np.empty(len(orders), dtype=np.bool_)
-    here = np.empty((3, 4))
-    for n in range(len(columns)):
-        here[:, :3] = columns[n]
-        _beside(here)
-        _run((start, child, orders), rows, height, here, entries, jets, live)
-        for o in range(len(outputs)):
-            for e in range(entries):
-                values[n, o, e] = jets[outputs[o], e] if live[outputs[o]] else 0.0
