@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from orbiframe.compiled.decorator import compiled
 from orbiframe.delaunay.lawson_flips import legalise, outside, push, push_around, turn
 from orbiframe.delaunay.triangle_arrays import (
     TriangleArrays,
     after,
-    bare,
     before,
     copy,
     corner,
@@ -38,7 +37,7 @@ def remove(triangles: TriangleArrays, vertices: ArrayLike) -> None:
         )
 
 
-@njit(cache=True)
+@compiled
 def _remove(triangles, order):  # type: ignore[no-untyped-def]
     """Remove vertices; returns -1, or the first that could not be removed."""
     ring = (np.empty(64, dtype=np.intp), np.empty((64, 3)), np.empty(64, dtype=np.bool_))
@@ -61,7 +60,7 @@ def _remove(triangles, order):  # type: ignore[no-untyped-def]
     return -1
 
 
-@njit(cache=True)
+@compiled
 def _link(triangles, vertex, ring):  # type: ignore[no-untyped-def]
     """Walk counterclockwise round a vertex, in the frame of the triangle at its seat.
 
@@ -90,7 +89,7 @@ def _link(triangles, vertex, ring):  # type: ignore[no-untyped-def]
     return degree, (edge, x, loop)
 
 
-@bare
+@compiled(arrays=False)
 def _soonest(curvature, v, degree, ring):  # type: ignore[no-untyped-def]
     """The edge at a vertex v that flips first if v, with all its lifts, is raised over the surface of the lifted sites.
 

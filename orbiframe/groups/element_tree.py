@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from orbiframe.compiled.decorator import compiled
 
 # Sides that a point is equally far beyond, up to this share of the size of its coordinates, are a tie, which the
 # number of the side decides. Whoever is this near to the limit itself cannot be told from a tie.
@@ -12,14 +13,14 @@ _UNSURE = 1e-13
 DONE, TIED, ON_RIM, MANY = 0, 1, 2, 3  # how a walk ended
 
 
-@njit(cache=True, inline="always")
+@compiled(inline=True)
 def _product(k, a, b, reverses, c, d):  # type: ignore[no-untyped-def]
     if reverses:
         c, d = c.conjugate(), d.conjugate()
     return a * c - k * b * d.conjugate(), a * d + b * c.conjugate()
 
 
-@njit(cache=True, inline="always")
+@compiled(inline=True)
 def _parent_side(x0, x1, x2, covectors, size, heights):  # type: ignore[no-untyped-def]
     """The first of the sides that x is farthest beyond; -1 for a point of the domain, -2 where rounding decides."""
     best = -np.inf
@@ -40,7 +41,7 @@ def _parent_side(x0, x1, x2, covectors, size, heights):  # type: ignore[no-untyp
     return -2
 
 
-@njit(cache=True, inline="always")
+@compiled(inline=True)
 def _is_parent(x0, x1, x2, side, covectors, rivals, rival_count, size):  # type: ignore[no-untyped-def]
     """1 if x is beyond a side and farther than beyond those that cross it, 0 if not; -1 where a tie is in sight."""
     margin = 2 * TIE * size * (abs(x0) + abs(x1) + abs(x2))
@@ -56,7 +57,7 @@ def _is_parent(x0, x1, x2, side, covectors, rivals, rival_count, size):  # type:
     return clear
 
 
-@njit(cache=True)
+@compiled
 def _rivals(k, covectors, bounding):  # type: ignore[no-untyped-def]
     """For every side the sides with a point of X, or nearly one, beyond both: no other matters for points beyond it.
 
@@ -74,13 +75,13 @@ def _rivals(k, covectors, bounding):  # type: ignore[no-untyped-def]
     return rivals, count
 
 
-@njit(cache=True, inline="always")
+@compiled(inline=True)
 def _put(tree, n, a, b, reverses, parent, step):  # type: ignore[no-untyped-def]
     tree[0][n], tree[1][n], tree[2][n] = a, b, reverses
     tree[3][n], tree[4][n] = parent, step
 
 
-@njit(cache=True)
+@compiled
 def _empty(count):  # type: ignore[no-untyped-def]
     return (
         np.empty(count, dtype=np.complex128),
@@ -91,7 +92,7 @@ def _empty(count):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True)
+@compiled
 def _longer(tree, count):  # type: ignore[no-untyped-def]
     """The same elements with room for twice as many."""
     grown = _empty(2 * count)
@@ -100,7 +101,7 @@ def _longer(tree, count):  # type: ignore[no-untyped-def]
     return grown
 
 
-@njit(cache=True)
+@compiled
 def grow(k, generators, mate, covectors, bounding, reach, rim, depth, room, most):  # type: ignore[no-untyped-def]
     """All elements with |b|^2 <= reach and at most `depth` steps from the identity, breadth first.
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from orbiframe.compiled import compiled
 
 
-@njit(cache=True)
+@compiled
 def _area(a, b, c):  # type: ignore[no-untyped-def]
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-@njit(cache=True)
+@compiled
 def _ear(points, a, b, c, count, corner):  # type: ignore[no-untyped-def]
     """How well shaped the ear (a, b, c) is, in (0, 1]; less than 0 if it turns over or holds another corner."""
     p, q, r = points[a], points[b], points[c]
@@ -27,7 +28,7 @@ def _ear(points, a, b, c, count, corner):  # type: ignore[no-untyped-def]
     return shape
 
 
-@njit(cache=True)
+@compiled
 def clip_ears(points):  # type: ignore[no-untyped-def]
     """The triangles (k - 2, 3) of a counterclockwise polygon (k, 2): always the best shaped ear goes first.
 

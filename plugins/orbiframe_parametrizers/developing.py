@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from orbiframe import Atlas, Geometry, MapError, Orbifold, Polyhedron, SurfaceType, Triangulation
+from orbiframe.compiled import compiled
 from orbiframe.meshes import covering_points, dijkstra_forest, edge_graph
 from orbiframe_parametrizers.relations import with_relations
 
@@ -73,7 +73,7 @@ def _edge_directions(mesh: Polyhedron, angles: Floats) -> tuple[Floats, Floats, 
     return first, last[mesh.next], sense
 
 
-@njit(cache=True)
+@compiled
 def _walked(tail, following, before, twin, same, angles, count):  # type: ignore[no-untyped-def]
     """Angles at which the two edges of every corner leave its vertex, and the sense of the corner."""
     first, last = np.empty(len(tail)), np.empty(len(tail))
@@ -137,7 +137,7 @@ def _edge_products(geometry: Geometry, outgoing: Floats, lengths: Floats, mirror
     return product
 
 
-@njit(cache=True)
+@compiled
 def _labels(frames, inverses, steps, tail, head):  # type: ignore[no-untyped-def]
     """frames[tail] steps inverses[head], (E, 3, 3)."""
     labels = np.empty_like(steps)
@@ -172,7 +172,7 @@ def _patch_frames(
     return forest.owner, onward
 
 
-@njit(cache=True)
+@compiled
 def _carry(order, parent, frames):  # type: ignore[no-untyped-def]
     """Frames seen from those of their parents become frames seen from their roots."""
     own = np.empty((3, 3))

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from orbiframe import MapError, Polyhedron
+from orbiframe.compiled import compiled
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -77,12 +77,12 @@ class Flippable:
         return forth
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(may_divide_by_zero=True)
 def _following(h: int) -> int:
     return h + 1 if h % 3 < 2 else h - 2
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(may_divide_by_zero=True)
 def _cosine_sum(x: Floats, h: int, t: int) -> float:
     """Twice the sum of the two opposite cosines in terms of x; negative where the edge is not Delaunay."""
     e, a, b = x[h], x[_following(h)], x[_following(_following(h))]
@@ -90,7 +90,7 @@ def _cosine_sum(x: Floats, h: int, t: int) -> float:
     return float((a * a + b * b - e * e) / (a * b) + (c * c + d * d - e * e) / (c * d))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(may_divide_by_zero=True)
 def _reverse_face(tail: Ints, twin: Ints, same: Bools, x: Floats, face: int) -> None:
     """Run through a face the other way: slot 0 keeps its edge, slots 1 and 2 exchange theirs."""
     s, first, second = 3 * face, 3 * face + 1, 3 * face + 2
@@ -110,7 +110,7 @@ def _reverse_face(tail: Ints, twin: Ints, same: Bools, x: Floats, face: int) -> 
             same[partner] = not flags[k]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(may_divide_by_zero=True)
 def _flat_diagonal(e: float, ik: float, jk: float, im: float, jm: float) -> float:
     """The distance of k and m on both sides of an edge i-j of length e in the plane."""
     along_k, along_m = (ik * ik - jk * jk + e * e) / (2 * e), (im * im - jm * jm + e * e) / (2 * e)
@@ -118,7 +118,7 @@ def _flat_diagonal(e: float, ik: float, jk: float, im: float, jm: float) -> floa
     return float(np.hypot(along_k - along_m, np.sqrt(above) + np.sqrt(below)))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(may_divide_by_zero=True)
 def _flip(tail: Ints, twin: Ints, same: Bools, x: Floats, h: int, flat: bool) -> None:
     """Replace the edge i-j in slot h by k-m: faces (i, j, k) and (j, i, m) become (m, k, i) and (k, m, j)."""
     t = twin[h]
@@ -147,7 +147,7 @@ def _flip(tail: Ints, twin: Ints, same: Bools, x: Floats, h: int, flat: bool) ->
     x[h] = x[t] = x_new
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(may_divide_by_zero=True)
 def _make_delaunay(tail: Ints, twin: Ints, same: Bools, x: Floats, flat: bool, limit: int) -> Ints:
     size = len(tail)
     queue = [h for h in range(size) if h < twin[h]]
@@ -181,7 +181,7 @@ def _make_delaunay(tail: Ints, twin: Ints, same: Bools, x: Floats, flat: bool, l
     return moves
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(may_divide_by_zero=True)
 def _undo(tail: Ints, twin: Ints, same: Bools, log: Ints, forth: Floats, back: Floats) -> None:
     """Undo the moves, last first; the matrices follow their halfedges, and each new one is a product of two."""
     idle = np.ones(len(tail))
@@ -218,7 +218,7 @@ def _undo(tail: Ints, twin: Ints, same: Bools, log: Ints, forth: Floats, back: F
         forth[t], back[t] = reverse, product
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(may_divide_by_zero=True)
 def _unflip(
     tail: Ints, twin: Ints, same: Bools, forth: Floats, back: Floats, h: int, t: int, hn: int, hp: int, tn: int, tp: int
 ) -> None:

@@ -1,0 +1,3 @@
+"""The public names of orbiframe.compiled, each with the module it lives in."""
+
+from .decorator import compiled as compiled
