@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.compiled.decorator import compiled
+from orbiframe.compiled.matrices import copy, multiply
 from orbiframe.delaunay.lawson_flips import chord, versine
-from orbiframe.delaunay.triangle_arrays import carry, copy, invert, move, multiply
+from orbiframe.delaunay.triangle_arrays import carry, invert, move
 from orbiframe.orbifolds.atlas import Atlas
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation

@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.compiled.decorator import compiled
+from orbiframe.compiled.matrices import copy, multiply
 from orbiframe.delaunay.lawson_flips import chord, legalise_star, push, versine
 from orbiframe.delaunay.point_walk import LONGEST_CHAIN, Located, by_place, walk
-from orbiframe.delaunay.triangle_arrays import TriangleArrays, copy, corner, move, multiply, recentre, split
+from orbiframe.delaunay.triangle_arrays import TriangleArrays, corner, move, recentre, split
 from orbiframe.errors import MapError
 
 Ints = NDArray[np.intp]

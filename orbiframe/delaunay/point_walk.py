@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.compiled.decorator import compiled
+from orbiframe.compiled.matrices import copy, multiply
 from orbiframe.delaunay.lawson_flips import turn
-from orbiframe.delaunay.triangle_arrays import TriangleArrays, arrays_of, copy, corner, move, multiply
+from orbiframe.delaunay.triangle_arrays import TriangleArrays, arrays_of, corner, move
 from orbiframe.errors import GeometryError
 from orbiframe.meshes.edge_paths import curve_order
 from orbiframe.orbifolds.atlas import Points

@@ -6,18 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from orbiframe.compiled.decorator import compiled
+from orbiframe.compiled.matrices import copy, multiply
 from orbiframe.delaunay.lawson_flips import legalise, outside, push, push_around, turn
-from orbiframe.delaunay.triangle_arrays import (
-    TriangleArrays,
-    after,
-    before,
-    copy,
-    corner,
-    flip,
-    merge,
-    move,
-    multiply,
-)
+from orbiframe.delaunay.triangle_arrays import TriangleArrays, after, before, corner, flip, merge, move
 from orbiframe.errors import MapError
 
 Ints = NDArray[np.intp]

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.compiled.decorator import compiled
+from orbiframe.compiled.matrices import copy, is_identity, multiply, set_identity
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
@@ -81,14 +82,6 @@ def _longer(values: NDArray[Number], size: int, fill: int = 0) -> NDArray[Number
 
 
 @compiled(arrays=False)
-def multiply(a, b, out):  # type: ignore[no-untyped-def]
-    """out = a b; out is another array than a and b."""
-    for i in range(3):
-        for j in range(3):
-            out[i, j] = a[i, 0] * b[0, j] + a[i, 1] * b[1, j] + a[i, 2] * b[2, j]
-
-
-@compiled(arrays=False)
 def invert(curvature, g, out):  # type: ignore[no-untyped-def]
     """out = the inverse of the isometry g; out is another array than g."""
     for i in range(3):
@@ -113,31 +106,6 @@ def move(curvature, g, x):  # type: ignore[no-untyped-def]
         length = np.sqrt(a * a + b * b + c * c)
         return a / length, b / length, c / length
     return (np.sqrt(1 + b * b + c * c) if curvature < 0 else 1.0), b, c
-
-
-@compiled(arrays=False)
-def copy(a, out):  # type: ignore[no-untyped-def]
-    """out = a, entry by entry: quicker than an assignment of slices."""
-    for i in range(3):
-        for j in range(3):
-            out[i, j] = a[i, j]
-
-
-@compiled(arrays=False)
-def _set_identity(g):  # type: ignore[no-untyped-def]
-    for i in range(3):
-        for j in range(3):
-            g[i, j] = 1.0 if i == j else 0.0
-
-
-@compiled(arrays=False)
-def is_identity(g):  # type: ignore[no-untyped-def]
-    """Whether g is the identity, to the bit."""
-    for i in range(3):
-        for j in range(3):
-            if g[i, j] != (1.0 if i == j else 0.0):
-                return False
-    return True
 
 
 @compiled(arrays=False)
@@ -238,15 +206,15 @@ def _join_inside(triangles, a, b):  # type: ignore[no-untyped-def]
     """Glue two halfedges of triangles in one frame."""
     triangles.twin[a], triangles.twin[b] = b, a
     triangles.same[a] = triangles.same[b] = False
-    _set_identity(triangles.gluing[a])
-    _set_identity(triangles.gluing[b])
+    set_identity(triangles.gluing[a])
+    set_identity(triangles.gluing[b])
 
 
 @compiled(arrays=False)
 def _mirror(triangles, face):  # type: ignore[no-untyped-def]
     """See a triangle from the mirror image of its frame; its corners 1 and 2 change places."""
     mirror = triangles.work[6]
-    _set_identity(mirror)
+    set_identity(mirror)
     mirror[2, 2] = -1.0
     reframe(triangles, face, mirror)
     e = 3 * face

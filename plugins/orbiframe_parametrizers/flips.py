@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import MapError, Polyhedron
-from orbiframe.compiled import compiled
+from orbiframe.compiled import compiled, copy, exchange, multiply
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -185,37 +185,27 @@ def _make_delaunay(tail: Ints, twin: Ints, same: Bools, x: Floats, flat: bool, l
 def _undo(tail: Ints, twin: Ints, same: Bools, log: Ints, forth: Floats, back: Floats) -> None:
     """Undo the moves, last first; the matrices follow their halfedges, and each new one is a product of two."""
     idle = np.ones(len(tail))
-    product = np.empty((3, 3))
-    reverse = np.empty((3, 3))
+    product, reverse = np.empty((3, 3)), np.empty((3, 3))
     for n in range(len(log) - 1, -1, -1):
         if log[n, 1] == 1:
             face = log[n, 0]
             _reverse_face(tail, twin, same, idle, face)
-            for s in (3 * face, 3 * face + 1, 3 * face + 2):
-                reverse[:] = forth[s]
-                forth[s] = back[s]
-                back[s] = reverse
-            reverse[:] = forth[3 * face + 1]
-            forth[3 * face + 1] = forth[3 * face + 2]
-            forth[3 * face + 2] = reverse
-            reverse[:] = back[3 * face + 1]
-            back[3 * face + 1] = back[3 * face + 2]
-            back[3 * face + 2] = reverse
+            for s in range(3 * face, 3 * face + 3):
+                exchange(forth[s], back[s])
+            exchange(forth[3 * face + 1], forth[3 * face + 2])
+            exchange(back[3 * face + 1], back[3 * face + 2])
             continue
         h = log[n, 0]
         t = twin[h]
         hn, hp = _following(h), _following(_following(h))
         tn, tp = _following(t), _following(_following(t))
-        for a in range(3):
-            for b in range(3):
-                product[a, b] = 0.0
-                reverse[a, b] = 0.0
-                for c in range(3):
-                    product[a, b] += forth[hp, a, c] * forth[tn, c, b]
-                    reverse[a, b] += back[tn, a, c] * back[hp, c, b]
+        multiply(forth[hp], forth[tn], product)
+        multiply(back[tn], back[hp], reverse)
         _unflip(tail, twin, same, forth, back, h, t, hn, hp, tn, tp)
-        forth[h], back[h] = product, reverse
-        forth[t], back[t] = reverse, product
+        copy(product, forth[h])
+        copy(reverse, back[h])
+        copy(reverse, forth[t])
+        copy(product, back[t])
 
 
 @compiled(may_divide_by_zero=True)
@@ -235,10 +225,13 @@ def _unflip(
             if twin[sources[n]] == sources[other]:
                 partner = targets[other]
         partners[n], flags[n] = partner, same[sources[n]]
-        a[n], b[n] = forth[sources[n]], back[sources[n]]
+        copy(forth[sources[n]], a[n])
+        copy(back[sources[n]], b[n])
     for n in range(4):
         s = targets[n]
-        twin[s], same[s], forth[s], back[s] = partners[n], flags[n], a[n], b[n]
+        twin[s], same[s] = partners[n], flags[n]
         twin[partners[n]] = s
+        copy(a[n], forth[s])
+        copy(b[n], back[s])
     tail[h], tail[hn], tail[hp] = i, j, k
     tail[t], tail[tn], tail[tp] = j, i, m
