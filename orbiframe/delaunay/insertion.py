@@ -45,7 +45,7 @@ def _rounds(sites: Located) -> Ints:
 
 @compiled
 def _insert(triangles, faces, vertices, order, home, x, near, vertex):  # type: ignore[no-untyped-def]
-    route, y = np.eye(3), np.empty(3)
+    route, y = np.empty((3, 3)), np.empty(3)
     k, face, seed, last, chain = triangles.curvature, 0, 1, -1, 0
     for i in order:
         if home[i] != last or chain >= LONGEST_CHAIN:

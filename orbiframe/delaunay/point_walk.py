@@ -111,7 +111,7 @@ def walk(triangles, face, x, route, seed):  # type: ignore[no-untyped-def]
 @compiled
 def _locate(triangles, order, patch, x, first, first_route, found_face, found_x):  # type: ignore[no-untyped-def]
     """Fill in the triangles and coordinates of points; returns -1, or the first point that was not found."""
-    route, y = np.eye(3), np.empty(3)
+    route, y = np.empty((3, 3)), np.empty(3)
     face, seed, last, chain = 0, 1, -1, 0
     for i in order:
         if patch[i] != last or chain >= LONGEST_CHAIN:
@@ -124,5 +124,5 @@ def _locate(triangles, order, patch, x, first, first_route, found_face, found_x)
         if face < 0:
             return i
         found_face[i] = face
-        found_x[i] = y
+        found_x[i, 0], found_x[i, 1], found_x[i, 2] = y[0], y[1], y[2]
     return -1

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from orbiframe.compiled.decorator import compiled
-from orbiframe.compiled.matrices import copy, multiply
+from orbiframe.compiled.matrices import copy, multiply, set_identity
 from orbiframe.delaunay.lawson_flips import legalise, outside, push, push_around, turn
 from orbiframe.delaunay.triangle_arrays import TriangleArrays, after, before, corner, flip, merge, move
 from orbiframe.errors import MapError
@@ -60,12 +60,12 @@ def _link(triangles, vertex, ring):  # type: ignore[no-untyped-def]
     the other way.
     """
     edge, x, loop = ring
-    route, moved = np.eye(3), np.empty((3, 3))
+    route, moved = np.empty((3, 3)), np.empty((3, 3))
+    set_identity(route)
     slot, mirrored, degree = triangles.seat[vertex], False, 0
     while degree == 0 or slot != triangles.seat[vertex]:
         if degree == len(edge):
-            edge, loop = np.concatenate((edge, edge)), np.concatenate((loop, loop))
-            x = np.concatenate((x, x))
+            edge, x, loop = _longer(edge, x, loop)
         end = before(slot) if mirrored else after(slot)
         edge[degree] = end if mirrored else slot
         x[degree, 0], x[degree, 1], x[degree, 2] = move(triangles.curvature, route, corner(triangles, end))
@@ -78,6 +78,17 @@ def _link(triangles, vertex, ring):  # type: ignore[no-untyped-def]
         slot = after(triangles.twin[way]) if starts else triangles.twin[way]
         mirrored = starts
     return degree, (edge, x, loop)
+
+
+@compiled
+def _longer(edge, x, loop):  # type: ignore[no-untyped-def]
+    """The same ring with room for twice as many edges."""
+    size = len(edge)
+    longer = (np.empty(2 * size, dtype=np.intp), np.empty((2 * size, 3)), np.empty(2 * size, dtype=np.bool_))
+    for i in range(size):
+        longer[0][i], longer[2][i] = edge[i], loop[i]
+        longer[1][i, 0], longer[1][i, 1], longer[1][i, 2] = x[i, 0], x[i, 1], x[i, 2]
+    return longer
 
 
 @compiled(arrays=False)

@@ -67,9 +67,9 @@ def _rivals(k, covectors, bounding):  # type: ignore[no-untyped-def]
     rivals, count = np.empty((sides, sides), dtype=np.int64), np.zeros(sides, dtype=np.int64)
     for s in range(sides):
         for t in range(sides):
-            c = np.cross(covectors[s], covectors[t])
-            rim = c[1] * c[1] + c[2] * c[2]
-            if s != t and (k >= 0 or max(s, t) >= bounding or c[0] * c[0] > rim * (1 - 1e-6)):
+            u, v = covectors[s], covectors[t]
+            c0, c1, c2 = u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+            if s != t and (k >= 0 or max(s, t) >= bounding or c0 * c0 > (c1 * c1 + c2 * c2) * (1 - 1e-6)):
                 rivals[s, count[s]] = t
                 count[s] += 1
     return rivals, count
@@ -79,6 +79,16 @@ def _rivals(k, covectors, bounding):  # type: ignore[no-untyped-def]
 def _put(tree, n, a, b, reverses, parent, step):  # type: ignore[no-untyped-def]
     tree[0][n], tree[1][n], tree[2][n] = a, b, reverses
     tree[3][n], tree[4][n] = parent, step
+
+
+@compiled
+def _largest(covectors):  # type: ignore[no-untyped-def]
+    """The size of the largest entry."""
+    largest = 0.0
+    for s in range(len(covectors)):
+        for i in range(3):
+            largest = max(largest, abs(covectors[s, i]))
+    return largest
 
 
 @compiled
@@ -96,8 +106,8 @@ def _empty(count):  # type: ignore[no-untyped-def]
 def _longer(tree, count):  # type: ignore[no-untyped-def]
     """The same elements with room for twice as many."""
     grown = _empty(2 * count)
-    grown[0][:count], grown[1][:count], grown[2][:count] = tree[0][:count], tree[1][:count], tree[2][:count]
-    grown[3][:count], grown[4][:count] = tree[3][:count], tree[4][:count]
+    for n in range(count):
+        _put(grown, n, tree[0][n], tree[1][n], tree[2][n], tree[3][n], tree[4][n])
     return grown
 
 
@@ -119,7 +129,7 @@ def grow(k, generators, mate, covectors, bounding, reach, rim, depth, room, most
     c, d, turns = generators
     sides, count, end, level = len(mate), 1, 1, 0
     tree, heights = _empty(max(room, 2 * sides + 2)), np.empty(sides)
-    size = np.abs(covectors).max() if sides else 1.0
+    size = _largest(covectors) if sides else 1.0
     rivals, rival_count = _rivals(k, covectors, bounding)
     _put(tree, 0, 1.0 + 0.0j, 0.0 + 0.0j, False, -1, -1)
     n = 0

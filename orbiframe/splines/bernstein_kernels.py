@@ -126,7 +126,8 @@ def _values(tables, level, degree, point, powers, out):  # type: ignore[no-untyp
 @compiled
 def _raise_degree(tables, level, factor, direction, lower, out):  # type: ignore[no-untyped-def]
     """Derivative by a direction: from polynomials of degree d - level - 1 to those of degree d - level."""
-    out[: tables.counts[level]] = 0.0
+    for a in range(tables.counts[level]):
+        out[a] = 0.0
     for a in range(tables.counts[level + 1]):
         value = factor * lower[a]
         for i in range(3):
@@ -146,7 +147,9 @@ def _jet(shape, tables, lam, kinds, work, powers, jet):  # type: ignore[no-untyp
     _values(tables, 0, degree, lam[0], powers, jet[0])
     if kinds == 1:
         return
-    jet[1:kinds] = 0.0
+    for kind in range(1, kinds):
+        for a in range(count):
+            jet[kind, a] = 0.0
     if degree >= 1:
         _values(tables, 1, degree, lam[0], powers, work[0])
         for u in range(2):
@@ -243,6 +246,17 @@ def evaluate_nets(place, nets, tables, values):  # type: ignore[no-untyped-def]
                 values[kind, order[n], q] = total
 
 
+@compiled(arrays=False)
+def _sort(values, begin, end):  # type: ignore[no-untyped-def]
+    """Sort a short piece of an array by insertion."""
+    for k in range(begin + 1, end):
+        value, place = values[k], k
+        while place > begin and values[place - 1] > value:
+            values[place] = values[place - 1]
+            place -= 1
+        values[place] = value
+
+
 @compiled
 def unknowns_of_triangles(start, indices, rows, size):  # type: ignore[no-untyped-def]
     """The unknowns that the rows of C of each triangle mention: (F + 1,) starts, columns, places of all nonzeros.
@@ -262,10 +276,9 @@ def unknowns_of_triangles(start, indices, rows, size):  # type: ignore[no-untype
                 seen[indices[k]] = f
                 column[count] = indices[k]
                 count += 1
-        own = column[first[f] : count]
-        own.sort()
-        for k in range(len(own)):
-            number[own[k]] = k
+        _sort(column, first[f], count)
+        for k in range(first[f], count):
+            number[column[k]] = k - first[f]
         for k in range(low, high):
             place[k] = number[indices[k]]
         first[f + 1] = count

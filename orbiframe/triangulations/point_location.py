@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.compiled.decorator import compiled
+from orbiframe.compiled.matrices import copy
 from orbiframe.errors import FitError
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
@@ -257,21 +258,25 @@ def _fill_grid(curvature, seed, isometry, steps, grid_face, grid_isometry, half_
     """The triangle at the centre of every square: every row starts from the row before, so that no walk is long."""
     inverse, twin, across = steps
     squares = grid_face.shape[2]
-    columns = np.empty((3, 4))
+    columns, g, row_isometry = np.empty((3, 4)), np.empty((3, 3)), np.empty((3, 3))
     for p in range(len(seed)):
         for side in range(grid_face.shape[1]):
-            row_face, row_isometry = seed[p], isometry[p].copy()
+            row_face = seed[p]
+            copy(isometry[p], row_isometry)
             for i in range(squares):
-                face, g = row_face, row_isometry.copy()
+                face = row_face
+                copy(row_isometry, g)
                 for j in range(squares):
                     x0, x1, x2 = _centre(curvature, i, j, squares, half_width[p])
                     x0 = -x0 if side else x0
                     for row in range(3):
                         columns[row, 0] = g[row, 0] * x0 + g[row, 1] * x1 + g[row, 2] * x2
-                        columns[row, 1:] = g[row]
+                        columns[row, 1], columns[row, 2], columns[row, 3] = g[row, 0], g[row, 1], g[row, 2]
                     face = _walk_one(face, columns, inverse, twin, across)
-                    g[:] = columns[:, 1:]
+                    for row in range(3):
+                        g[row, 0], g[row, 1], g[row, 2] = columns[row, 1], columns[row, 2], columns[row, 3]
                     grid_face[p, side, i, j] = face
-                    grid_isometry[p, side, i, j] = g
+                    copy(g, grid_isometry[p, side, i, j])
                     if j == 0:
-                        row_face, row_isometry = face, g.copy()
+                        row_face = face
+                        copy(g, row_isometry)

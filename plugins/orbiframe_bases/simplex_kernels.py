@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from orbiframe.compiled import compiled
+from orbiframe.compiled import compiled, copy
 
 # Three knots count as spanning a point if they span the point a little beside it, at x + _BESIDE (e1 + 0.6 e2): one
 # place for all cones, so that points on knots and on planes through knots lie in exactly one cone of each subdivision.
@@ -138,7 +138,8 @@ def _emit(element, family, s, output, here, jets, entries, shape, product, out):
         _times_linear(lead[element, output], here, jet, entries, product)
         jet = product
     _covariant(shape[0], shape[1], jet, out)
-    out *= factor[element, output]
+    for kind in range(len(out)):
+        out[kind] *= factor[element, output]
 
 
 @compiled
@@ -210,7 +211,7 @@ def simplex_splines(program, rows, height, columns, values):  # type: ignore[no-
     jets, live = np.empty((len(orders), entries)), np.empty(len(orders), dtype=np.bool_)
     here = np.empty((3, 4))
     for n in range(len(columns)):
-        here[:, :3] = columns[n]
+        copy(columns[n], here)
         _beside(here)
         _run((start, child, orders), rows, height, here, entries, jets, live)
         for o in range(len(outputs)):
