@@ -42,7 +42,7 @@ def test_distances_of_points_whose_squares_are_no_floats(distance, apart):
 
 def test_a_geodesic_that_leaves_all_floats_is_an_error():
     x = H2.from_polar(60.0, 0.3)
-    with pytest.raises(GeometryError, match="vector 0 has the length .* at distance 60 "):
+    with pytest.raises(GeometryError, match=r"vector 0 has the length .* at distance 60 "):
         H2.exp(x, H2.frame(x) @ np.array([0.7, 0.2]))
 
 
