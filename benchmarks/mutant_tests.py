@@ -21,6 +21,7 @@ import pytest
 from mutant_trials import ROOT, SOURCES, Tree
 
 _RECORDING_LIMIT = 900.0
+LEFT_OUT = ("tests/docs/", "tests/architecture/", "tests/out_of_tree/", "tests/accuracy/", "tests/corpus/")
 
 
 class Recorder:
@@ -159,10 +160,11 @@ class Records:
         return {} if self.files[file]["failed"] else {test: s for test, (s, _) in self.files[file]["tests"].items()}
 
 
-def test_files() -> list[str]:
-    """All files of tests, but for those of documents and of the layout, which look at texts alone."""
+@cache
+def test_files() -> tuple[str, ...]:
+    """All files of tests, but for those that look at texts alone and the long ones."""
     found = sorted(str(p.relative_to(ROOT)) for p in (ROOT / "tests").rglob("test_*.py"))
-    return [file for file in found if not file.startswith(("tests/docs", "tests/architecture", "tests/out_of_tree"))]
+    return tuple(file for file in found if not file.startswith(LEFT_OUT))
 
 
 def digest(*files: Path) -> str:
