@@ -209,35 +209,29 @@ def _files_of(module: str, names: Sequence[str]) -> Iterator[str]:
 
 
 @cache
-def is_compiled(path: str) -> bool:
-    """Whether a source has compiled functions."""
-    return "njit(" in (ROOT / path).read_text() or "@bare" in (ROOT / path).read_text()
-
-
-@cache
 def compiled_functions(path: str) -> frozenset[str]:
     """The names of the compiled functions of a source; "" for its constants, which are compiled into them."""
     tree = ast.parse((ROOT / path).read_bytes())
     found = [f for f in ast.walk(tree) if isinstance(f, ast.FunctionDef)]
-    marked = {f.name for f in found if any("njit" in (d := ast.unparse(m)) or "bare" in d for m in f.decorator_list)}
+    marked = {f.name for f in found if any(ast.unparse(d).startswith("compiled") for d in f.decorator_list)}
     return frozenset(marked | {""}) if marked else frozenset()
 
 
 @cache
-def with_callers(path: str) -> tuple[str, ...]:
-    """A source and the compiled ones that import it, directly or through others: what is compiled anew."""
+def with_callers(path: str) -> frozenset[str]:
+    """A source and those with compiled functions that import it, directly or through others."""
     found = {path}
     while True:
-        more = {p for p in sources() if is_compiled(p) and p not in found and not found.isdisjoint(imports()[p])}
+        more = {p for p in sources() if p not in found and compiled_functions(p) and not found.isdisjoint(imports()[p])}
         if not more:
-            return tuple(sorted(found))
+            return frozenset(found)
         found |= more
 
 
 @cache
 def functions_near(path: str) -> frozenset[str]:
     """Functions whose run may run compiled code of a source: all of the files that import it or its callers."""
-    compiled = set(with_callers(path))
+    compiled = with_callers(path)
     near = compiled | {p for p in sources() if not compiled.isdisjoint(imports()[p])}
     return frozenset(name for p in near for name in functions_of(p))
 

@@ -49,8 +49,7 @@ class Tree:
     """A copy of the tracked and the new files of the tree, in which one source at a time may be changed."""
 
     def __init__(self, folder: Path) -> None:
-        self.root, self.cache = folder / "tree", folder / "numba"
-        self.spare = folder / "numba_of_mutant"
+        self.root, self.code = folder / "tree", folder / "code"
         self._changes = 0
         self._update()
 
@@ -69,8 +68,8 @@ class Tree:
                 shutil.copyfile(source, target)
 
     @contextmanager
-    def changed(self, path: str, source: bytes, stale: Sequence[str] | None) -> Iterator[Path]:
-        """The folder for compiled code while a source is another; stale: modules whose compiled code is then wrong.
+    def changed(self, path: str, source: bytes, is_compiled: bool) -> Iterator[Path]:
+        """The folder of machine code while a source is another; where it is compiled, a folder for this mutant alone.
 
         A time of its own tells Python that the file is another one, even within the same second and at the same size.
         """
@@ -80,28 +79,27 @@ class Tree:
         try:
             file.write_bytes(source)
             os.utime(file, (times.st_atime, times.st_mtime + 10 * self._changes))
-            yield self.cache if stale is None else self._fresh_cache(stale)
+            yield self._linked_code() if is_compiled else self.code
         finally:
             file.write_bytes(before)
             os.utime(file, ns=(times.st_atime_ns, times.st_mtime_ns))
 
-    def _fresh_cache(self, stale: Sequence[str]) -> Path:
-        """Compiled code as it is, without that of some modules; numba replaces files and changes none in place."""
-        shutil.rmtree(self.spare, ignore_errors=True)
-        if self.cache.exists():
-            shutil.copytree(self.cache, self.spare, copy_function=os.link)
-            for file in [p for name in stale for p in self.spare.rglob(f"{name}.*")]:
-                file.unlink()
-        return self.spare
+    def _linked_code(self) -> Path:
+        """All machine code as links: files that no longer fit are replaced there, and stay as they are here."""
+        linked = self.code.with_name("code_of_mutant")
+        shutil.rmtree(linked, ignore_errors=True)
+        if self.code.exists():
+            shutil.copytree(self.code, linked, copy_function=os.link)
+        return linked
 
-    def run(self, plugin: Any, files: Sequence[str], limit: float, cache: Path | None = None) -> Outcome:
+    def run(self, plugin: Any, files: Sequence[str], limit: float, code: Path | None = None) -> Outcome:
         """Run test files in a new process with a plugin of pytest; the plugin may send lines to `plugin.received`."""
         read, write = os.pipe()
         start = time.perf_counter()
         child = os.fork()
         if not child:
             os.close(read)
-            _in_child(self.root, cache or self.cache, plugin, files, write)
+            _in_child(self.root, code or self.code, plugin, files, write)
         os.close(write)
         reader = threading.Thread(target=_receive, args=(read, plugin.received))
         reader.start()
@@ -130,7 +128,7 @@ def _wait(child: int, deadline: float) -> int | None:
     return os.waitstatus_to_exitcode(status) if done else None
 
 
-def _in_child(root: Path, cache: Path, plugin: Any, files: Sequence[str], write: int) -> None:
+def _in_child(root: Path, code: Path, plugin: Any, files: Sequence[str], write: int) -> None:
     """Run the tests and end the process."""
     status = 1
     try:
@@ -140,21 +138,21 @@ def _in_child(root: Path, cache: Path, plugin: Any, files: Sequence[str], write:
         os.dup2(log, 1)
         os.dup2(log, 2)
         os.chdir(root)
-        _look_only_in(root, cache)
+        _look_only_in(root, code)
         plugin.send = os.fdopen(write, "w", buffering=1)
         status = _tests(plugin, files)
     finally:
         os._exit(status)
 
 
-def _look_only_in(root: Path, cache: Path) -> None:
+def _look_only_in(root: Path, code: Path) -> None:
     """Import the copy, here and in processes that tests start, and keep compiled code in a folder."""
     import numba
 
     paths = [str(root), str(root / "plugins")]
     sys.path[:] = paths + [path for path in sys.path if not Path(path).resolve().is_relative_to(ROOT / "benchmarks")]
     os.environ["PYTHONPATH"] = os.pathsep.join(paths)
-    os.environ["NUMBA_CACHE_DIR"] = numba.config.CACHE_DIR = str(cache)
+    os.environ["NUMBA_CACHE_DIR"] = numba.config.CACHE_DIR = str(code)
     assert not any(name.startswith("orbiframe") for name in sys.modules)
 
 

@@ -32,10 +32,8 @@ from mutant_tests import (
     digest,
     functions_near,
     functions_of,
-    is_compiled,
     sources,
     test_files,
-    with_callers,
 )
 from mutant_trials import ROOT, Tree, load_libraries
 from mutations import Mutation, mutations
@@ -48,7 +46,7 @@ STAGES = ("own tests", "folder", "elsewhere")
 PLUGINS = ("bases", "parametrizers", "fitters", "polygons", "exact")
 KERNEL = (
     "planes", "meshes", "words", "orbifolds", "groups", "triangulations", "delaunay", "functions", "splines",
-    "surfaces", "components", "files", "fitting",
+    "surfaces", "components", "compiled", "files", "fitting",
 )  # fmt: skip
 COMMANDS = ("plugins/orbiframe_drawing/draw_command.py", "plugins/orbiframe_invariants/group_command.py")
 
@@ -144,18 +142,15 @@ def trial(mutant: Mutant, tree: Tree, records: Records) -> dict[str, Any]:
         "key": mutant.key, "area": mutant.area, "path": mutant.path, "line": mutant.mutation.line,
         "function": mutant.mutation.function, "mutation": mutant.mutation.text, "source": digest(ROOT / mutant.path),
     }  # fmt: skip
-    stale = None
-    if is_compiled(mutant.path):
-        deep = mutant.mutation.function in compiled_functions(mutant.path)
-        stale = [Path(p).stem for p in (with_callers(mutant.path) if deep else [mutant.path])]
+    compiled = mutant.mutation.function in compiled_functions(mutant.path)
     spent, tried = 0.0, 0
-    with tree.changed(mutant.path, mutant.mutation.planted(source), stale) as cache:
+    with tree.changed(mutant.path, mutant.mutation.planted(source), compiled) as code:
         for name, files in zip(STAGES, mutant.stages, strict=True):
             order, seconds = chosen(mutant, files, records, name)
             if not order:
                 continue
-            limit = 20 + 5 * seconds + (60 if stale else 0)
-            outcome = tree.run(Chooser(order), sorted({test.split("::")[0] for test in order}), limit, cache)
+            limit = 20 + 5 * seconds + (60 if compiled else 0)
+            outcome = tree.run(Chooser(order), sorted({test.split("::")[0] for test in order}), limit, code)
             spent, tried = spent + outcome.seconds, tried + len(order)
             if outcome.failed or not outcome.in_time:
                 by = outcome.failed or "time limit"

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from orbiframe.compiled.decorator import compiled
 from orbiframe.errors import TopologyError
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
@@ -100,12 +100,12 @@ def _flattened(points: Floats, normal: Floats) -> Floats:
     return np.stack([centred @ u, centred @ np.cross(n, u)], axis=1)
 
 
-@njit(cache=True)
+@compiled
 def _cross(a: Floats, b: Floats, c: Floats) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])  # type: ignore[no-any-return]
 
 
-@njit(cache=True)
+@compiled
 def _is_ear(p: Floats, before: Ints, after: Ints, ear: int) -> bool:
     a, b, c = before[ear], ear, after[ear]
     if _cross(p[a], p[b], p[c]) <= 0.0:
@@ -123,7 +123,7 @@ def _is_ear(p: Floats, before: Ints, after: Ints, ear: int) -> bool:
     return True
 
 
-@njit(cache=True)
+@compiled
 def _shortest_ear(p: Floats, before: Ints, after: Ints, start: int, checked: bool) -> int:
     best, best_length, ear = -1, np.inf, start
     while True:
@@ -136,7 +136,7 @@ def _shortest_ear(p: Floats, before: Ints, after: Ints, start: int, checked: boo
             return best
 
 
-@njit(cache=True)
+@compiled
 def _cut_ears(p: Floats) -> Ints:
     """Triangles (n - 2, 3) of a polygon (n, 2); where no ear is left (a crossing polygon) the shortest cut is taken."""
     n = len(p)
