@@ -1,4 +1,4 @@
-"""Polygon formats: OFF, OBJ, PLY and XDMF with faces of any size, STL and 3MF with triangles."""
+"""Formats that are read and written here, without a library: polygons, scenes and the meshes of other programs."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ FORMATS = {
     "stl": ("stl", "stereolithography, text or binary: triangles; equal corners become one vertex", (".stl",)),
     "xdmf": ("xdmf", "XDMF with the numbers in the file itself: polygons", (".xdmf", ".xmf")),
     "3mf": ("threemf", "3D Manufacturing Format: triangles", (".3mf",)),
+    "gltf": ("gltf.", "glTF 2.0, binary or text: triangles, normals, colours of vertices", (".glb", ".gltf")),
 }
 
 
@@ -19,8 +20,13 @@ def orbiframe_components() -> list[Component]:
     """A reader and a writer for each of these formats."""
     return [
         Component(
-            kind, name, f"orbiframe_polygons.{module}_{kind}:{verb}", summary, suffixes=suffixes, welds=name == "stl"
+            kind, name, f"orbiframe_polygons.{_module(module, kind)}:{verb}", summary, suffixes=suffixes, welds=name == "stl"
         )
         for name, (module, summary, suffixes) in FORMATS.items()
         for kind, verb in (("reader", "read"), ("writer", "write"))
     ]
+
+
+def _module(module: str, kind: str) -> str:
+    """The module of a reader or writer: off_reader, or reader in a folder of its own."""
+    return f"{module}{kind}" if module.endswith(".") else f"{module}_{kind}"
