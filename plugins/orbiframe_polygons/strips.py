@@ -22,5 +22,6 @@ def triangles_of_strips(order: Ints) -> Ints:
     start = np.maximum.accumulate(np.where(order == RESTART, index + 1, 0))
     k = index[:-2]
     odd = (k - start[:-2]) % 2
-    made = order[np.stack([k, k + 1 + odd, k + 2 - odd], axis=1)]
-    return made[(made != RESTART).all(axis=1) & (made != np.roll(made, 1, axis=1)).all(axis=1)]
+    made: Ints = order[np.stack([k, k + 1 + odd, k + 2 - odd], axis=1)]
+    whole = (made != RESTART).all(axis=1) & (made != np.roll(made, 1, axis=1)).all(axis=1)
+    return np.asarray(made[whole])

@@ -109,7 +109,7 @@ class _Grid:
         words = self._dimensions[name].split()
         if not words:
             return
-        sizes = [int(word) if word.isdigit() and len(word) < 19 else -1 for word in words]
+        sizes = [int(word) if word.isascii() and word.isdigit() and len(word) < 19 else -1 for word in words]
         if min(sizes) < 0 or math.prod(sizes) != count or (len(sizes) > 1 and width and sizes[-1] != width):
             line = self._items[name][0]
             self._refuse(line, f"the Dimensions are {self._dimensions[name][:40]!r}, but {count} numbers follow")
@@ -165,7 +165,7 @@ def _require_count(grid: _Grid, attributes: dict[str, str], found: int) -> None:
 
 
 def _count(grid: _Grid, word: str, name: str) -> int:
-    if not word.isdigit() or len(word) > 18:
+    if not (word.isascii() and word.isdigit() and len(word) < 19):
         raise FormatError(f"{grid.path}: the topology has {name}={word[:20]!r}, but a whole number is required")
     return int(word)
 

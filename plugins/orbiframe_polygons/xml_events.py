@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import NoReturn
 from xml.parsers import expat
 
 from orbiframe import FormatError
@@ -22,7 +23,7 @@ def parse(path: Path, data: bytes, start: Start, text: Text, end: End) -> None:
     parser = expat.ParserCreate()
     parser.buffer_text = True
 
-    def refuse(*_: object) -> None:
+    def refuse(*_: object) -> NoReturn:
         line = parser.CurrentLineNumber
         raise FormatError(f"{path}, line {line}: XML with entities is not read; take them out")
 

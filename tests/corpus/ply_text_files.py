@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from corpus.answers import GOOD, NO_NUMBERS, ONES, Mesh, Rows, named
+from corpus.answers import CORNERS, GOOD, NO_NUMBERS, ONES, Mesh, Rows, named
 from corpus.off_files import FACE_LINES, POINT_LINES
 
 PLY_HEADER = """ply
