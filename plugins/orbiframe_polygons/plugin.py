@@ -14,16 +14,28 @@ FORMATS = {
     "gltf": ("gltf.", "glTF 2.0, binary or text: triangles, normals, colours of vertices", (".glb", ".gltf")),
 }
 
+# Formats that are read here, by readers without writers beside them: module, summary, suffixes.
+READ_ONLY = {
+    "abaqus": ("elements.abaqus_reader", "Abaqus input: shells, parts at their instances", (".inp",)),
+    "nastran": ("elements.nastran_reader", "Nastran bulk data: shells", (".nas", ".bdf", ".fem")),
+    "gmsh": ("elements.gmsh_reader", "Gmsh, versions 1 to 4.1: triangles and quads", (".msh",)),
+    "medit": ("elements.medit_reader", "Medit, text and binary: triangles and quads", (".mesh", ".meshb")),
+    "tecplot": ("elements.tecplot_reader", "Tecplot, text: triangles and quads", (".dat", ".tec")),
+}
+
 
 @hookimpl
 def orbiframe_components() -> list[Component]:
-    """A reader and a writer for each of these formats."""
+    """A reader for each of these formats, and a writer for most."""
     return [
         Component(
             kind, name, f"orbiframe_polygons.{_module(module, kind)}:{verb}", summary, suffixes=suffixes, welds=name == "stl"
         )
         for name, (module, summary, suffixes) in FORMATS.items()
         for kind, verb in (("reader", "read"), ("writer", "write"))
+    ] + [
+        Component("reader", name, f"orbiframe_polygons.{module}:read", summary, suffixes=suffixes)
+        for name, (module, summary, suffixes) in READ_ONLY.items()
     ]
 
 
