@@ -7,8 +7,6 @@ from orbiframe.plugin import Component, hookimpl
 # meshio knows more suffixes. Left out are those whose surfaces it cannot write and read again without loss, those
 # whose library is not installed with it, archives, and what is seldom used for surfaces.
 SUFFIXES = (
-    ".vtk",
-    ".vtu",
     ".msh",
     ".mesh",
     ".meshb",
@@ -36,6 +34,6 @@ def orbiframe_components() -> list[Component]:
     return [
         Component("reader", "meshio", "orbiframe_meshio.reader:read", "AVS-UCD, Netgen, Permas, SU2, UGRID", suffixes=READ),
         Component(
-            "writer", "meshio", "orbiframe_meshio.writer:write", "VTK, Gmsh, Medit and others", suffixes=SUFFIXES
+            "writer", "meshio", "orbiframe_meshio.writer:write", "Gmsh, Medit, Abaqus, Nastran and others", suffixes=SUFFIXES
         ),
     ]

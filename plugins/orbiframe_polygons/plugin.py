@@ -12,6 +12,7 @@ FORMATS = {
     "xdmf": ("xdmf", "XDMF with the numbers in the file itself: polygons", (".xdmf", ".xmf")),
     "3mf": ("threemf", "3D Manufacturing Format: triangles", (".3mf",)),
     "gltf": ("gltf.", "glTF 2.0, binary or text: triangles, normals, colours of vertices", (".glb", ".gltf")),
+    "vtk": ("vtk.", "VTK, legacy and XML: polygons", (".vtk", ".vtp", ".vtu")),
 }
 
 # Formats that are read here, by readers without writers beside them: module, summary, suffixes.

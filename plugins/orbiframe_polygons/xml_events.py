@@ -14,10 +14,10 @@ Text = Callable[[str], None]
 End = Callable[[str], None]
 
 
-def parse(path: Path, data: bytes, start: Start, text: Text, end: End) -> None:
+def parse(path: Path, data: bytes, start: Start, text: Text, end: End, *, whole: bool = True) -> None:
     """Call `start` with name, attributes and line of every element, `text` with its characters, and `end`.
 
-    Prefixes of names are taken away. A document type is passed over; what it names is never opened. Raises FormatError
+    whole: whether the data ends as XML; else what is left open at its end is no error. Prefixes of names are taken away. A document type is passed over; what it names is never opened. Raises FormatError
     with the line for what is no XML, and for entities.
     """
     parser = expat.ParserCreate()
@@ -34,7 +34,7 @@ def parse(path: Path, data: bytes, start: Start, text: Text, end: End) -> None:
     parser.CharacterDataHandler = text
     parser.EndElementHandler = lambda name: end(_local(name))
     try:
-        parser.Parse(data, True)
+        parser.Parse(data, whole)
     except expat.ExpatError as error:
         raise FormatError(
             f"{path}, line {error.lineno}: this is no sound XML: {expat.ErrorString(error.code)}"
