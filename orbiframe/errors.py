@@ -38,4 +38,4 @@ class FitError(OrbiframeError):
 
 
 class Notice(UserWarning):
-    """What was done to the content of a file without loss, such as a change of units: said, even where losses are errors."""
+    """What was done to the content of a file without loss, such as a change of units: said, and never an error."""

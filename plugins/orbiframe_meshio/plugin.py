@@ -32,8 +32,14 @@ READ = tuple(suffix for suffix in SUFFIXES if suffix not in WRITTEN)
 def orbiframe_components() -> list[Component]:
     """One reader and one writer for all these formats; as `format` they serve every suffix that meshio knows."""
     return [
-        Component("reader", "meshio", "orbiframe_meshio.reader:read", "AVS-UCD, Netgen, Permas, SU2, UGRID", suffixes=READ),
         Component(
-            "writer", "meshio", "orbiframe_meshio.writer:write", "Gmsh, Medit, Abaqus, Nastran and others", suffixes=SUFFIXES
+            "reader", "meshio", "orbiframe_meshio.reader:read", "AVS-UCD, Netgen, Permas, SU2, UGRID", suffixes=READ
+        ),
+        Component(
+            "writer",
+            "meshio",
+            "orbiframe_meshio.writer:write",
+            "Gmsh, Medit, Abaqus, Nastran and others",
+            suffixes=SUFFIXES,
         ),
     ]

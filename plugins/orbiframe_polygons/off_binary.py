@@ -25,8 +25,8 @@ def parts(path: Path, data: bytes, at: int, width: int) -> tuple[Floats, Ints, I
     at += 12
     if vertices < 0 or faces < 0 or 4 * (vertices * width + 2 * faces) > len(data) - at:
         raise FormatError(
-            f"{path}, byte {at - 12}: the file is binary; {vertices} vertices and {faces} faces are declared, but {len(data) - at} bytes "
-            "follow; is the file cut short?"
+            f"{path}, byte {at - 12}: the file is binary; {vertices} vertices and {faces} faces are declared, but "
+            f"{len(data) - at} bytes follow; is the file cut short?"
         )
     points = np.frombuffer(data, ">f4", vertices * width, at).astype(np.float64).reshape(vertices, width)
     require_finite(points, lambda row: f"{path}, byte {at + 4 * width * row}")

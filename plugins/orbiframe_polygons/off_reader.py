@@ -84,7 +84,9 @@ def _binary_parts(path: Path, head: re.Match[bytes]) -> tuple[Kind, Parts]:
     if four or general:
         raise FormatError(f"{path}: found {shown(head[0].strip())}, but only points of three dimensions are read")
     kind = Kind(texture, coloured, normals)
-    parts = Parts(*off_binary.parts(path, path.read_bytes(), head.end(), kind.widths[-1] if coloured else kind.widths[0]))
+    parts = Parts(
+        *off_binary.parts(path, path.read_bytes(), head.end(), kind.widths[-1] if coloured else kind.widths[0])
+    )
     require_colours(parts.face_colors, path)
     return kind, parts
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -63,6 +64,14 @@ def reversed_faces(sizes: Ints, tail: Ints) -> Ints:
     first = offsets_of(sizes)[:-1]
     within = ragged(np.zeros_like(sizes), sizes)
     return tail[np.repeat(first, sizes) + (np.repeat(sizes, sizes) - within) % np.repeat(sizes, sizes)]
+
+
+def rotation(axis: Floats, angle: float) -> Floats:
+    """The rotation about a unit axis by an angle in radians, for rows on its left (Rodrigues)."""
+    x, y, z = axis.tolist()
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    turn: Floats = np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * (cross @ cross)
+    return turn.T
 
 
 def _turned_normals(normals: Floats, linear: Floats) -> Floats | None:

@@ -17,6 +17,7 @@ FORMATS = {
 
 # Formats that are read here, by readers without writers beside them: module, summary, suffixes.
 READ_ONLY = {
+    "collada": ("collada.reader", "COLLADA: polygons, each mesh at its places", (".dae",)),
     "abaqus": ("elements.abaqus_reader", "Abaqus input: shells, parts at their instances", (".inp",)),
     "nastran": ("elements.nastran_reader", "Nastran bulk data: shells", (".nas", ".bdf", ".fem")),
     "gmsh": ("elements.gmsh_reader", "Gmsh, versions 1 to 4.1: triangles and quads", (".msh",)),
@@ -28,16 +29,34 @@ READ_ONLY = {
 @hookimpl
 def orbiframe_components() -> list[Component]:
     """A reader for each of these formats, and a writer for most."""
-    return [
-        Component(
-            kind, name, f"orbiframe_polygons.{_module(module, kind)}:{verb}", summary, suffixes=suffixes, welds=name == "stl"
-        )
-        for name, (module, summary, suffixes) in FORMATS.items()
-        for kind, verb in (("reader", "read"), ("writer", "write"))
-    ] + [
-        Component("reader", name, f"orbiframe_polygons.{module}:read", summary, suffixes=suffixes)
-        for name, (module, summary, suffixes) in READ_ONLY.items()
-    ]
+    return (
+        [
+            Component(
+                kind,
+                name,
+                f"orbiframe_polygons.{_module(module, kind)}:{verb}",
+                summary,
+                suffixes=suffixes,
+                welds=name == "stl",
+            )
+            for name, (module, summary, suffixes) in FORMATS.items()
+            for kind, verb in (("reader", "read"), ("writer", "write"))
+        ]
+        + [
+            Component("reader", name, f"orbiframe_polygons.{module}:read", summary, suffixes=suffixes)
+            for name, (module, summary, suffixes) in READ_ONLY.items()
+        ]
+        + [
+            Component(
+                "reader",
+                name,
+                f"orbiframe_polygons.packed_reader:read_{name}",
+                f"one mesh in a .{name}",
+                suffixes=(f".{name}",),
+            )
+            for name in ("gz", "zip")
+        ]
+    )
 
 
 def _module(module: str, kind: str) -> str:

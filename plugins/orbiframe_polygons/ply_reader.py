@@ -73,7 +73,9 @@ def _all_faces(path: Path, found: dict[str, Table], vertex_count: int) -> tuple[
 def _strips(path: Path, strips: Table, vertex_count: int) -> tuple[Ints, Ints]:
     """The triangles of all strips; -1 starts a strip anew."""
     lists = _list(path, strips)
-    order = whole(strips.columns[lists], lambda k: strips.place(int(np.searchsorted(np.cumsum(strips.sizes[lists]), k, "right"))))
+    order = whole(
+        strips.columns[lists], lambda k: strips.place(int(np.searchsorted(np.cumsum(strips.sizes[lists]), k, "right")))
+    )
     # Every list starts anew too.
     order = np.insert(order, offsets_of(strips.sizes[lists])[:-1], RESTART)
     made = triangles_of_strips(order)

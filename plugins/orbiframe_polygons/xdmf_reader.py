@@ -46,7 +46,7 @@ def _points(grid: _Grid) -> Floats:
     width = WIDTHS.get(kind.upper())
     if width is None or len(values) % width:
         raise FormatError(
-            f"{grid.path}: the geometry is {shown(kind.encode())} with {len(values)} numbers; rows of XYZ or XY are read"
+            f"{grid.path}: the geometry is {shown(kind.encode())} with {len(values)} numbers; XYZ or XY is read"
         )
     grid.require_dimensions("Geometry", len(values), width)
     return np.pad(values.reshape(-1, width), ((0, 0), (0, 3 - width)))
@@ -87,7 +87,9 @@ class _Grid:
         """Raise FormatError for an item that is made of others, or whose numbers are packed."""
         kind = attributes.get("ItemType", "Uniform")
         if kind.lower() != "uniform" or outer == "DataItem":
-            self._refuse(line, f"items of the type {kind[:20]!r}, and items inside others, are not read; save plain ones")
+            self._refuse(
+                line, f"items of the type {kind[:20]!r}, and items inside others, are not read; save plain ones"
+            )
         for name in ("Function", "Seek", "Compression"):
             if attributes.get(name, "0").lower() not in ("0", "raw"):
                 self._refuse(line, f"an item with {name}={attributes[name][:20]!r} is not read; save plain ones")

@@ -17,7 +17,9 @@ End = Callable[[str], None]
 def parse(path: Path, data: bytes, start: Start, text: Text, end: End, *, whole: bool = True) -> None:
     """Call `start` with name, attributes and line of every element, `text` with its characters, and `end`.
 
-    whole: whether the data ends as XML; else what is left open at its end is no error. Prefixes of names are taken away. A document type is passed over; what it names is never opened. Raises FormatError
+    whole: whether the data ends as XML; else what is left open at its end is no error.
+
+    Prefixes of names are taken away. A document type is passed over; what it names is never opened. Raises FormatError
     with the line for what is no XML, and for entities.
     """
     parser = expat.ParserCreate()

@@ -131,7 +131,11 @@ OFF_DAMAGED: list[tuple[str, str | bytes, Mesh | str]] = [
     ("binary cut short", BINARY[:-4], "byte .*does not fit"),
     ("binary with more", BINARY + bytes(4), "byte .*cut short|declared|does not end"),
     ("binary with a huge count", BINARY.replace(b"\0\0\0\4", b"\x7f\0\0\4", 1), "byte 11.*declared"),
-    ("binary with an index too large", BINARY.replace(struct.pack(">5i", 3, 2, 0, 3, 0), struct.pack(">5i", 3, 2, 0, 4, 0)), "byte .*vertex 4"),
+    (
+        "binary with an index too large",
+        BINARY.replace(struct.pack(">5i", 3, 2, 0, 3, 0), struct.pack(">5i", 3, 2, 0, 4, 0)),
+        "byte .*vertex 4",
+    ),
     ("header and counts in one word of another dimension", OFF.replace("OFF\n", "4OFF"), "line 1.*another dimension"),
     ("negative count", OFF.replace("4 4 6", "-4 4 6"), "line 2"),
     ("count with a point", OFF.replace("4 4 6", "4.5 4 6"), "line 2"),

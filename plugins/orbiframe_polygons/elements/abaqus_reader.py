@@ -15,7 +15,7 @@ from orbiframe import FormatError, Polyhedron
 from orbiframe_polygons.elements.abaqus_keywords import HARMLESS, MESH
 from orbiframe_polygons.elements.numbered import Numbered, tell_passed
 from orbiframe_polygons.faces import whole
-from orbiframe_polygons.parts import Part, polyhedron_of
+from orbiframe_polygons.parts import Part, polyhedron_of, rotation
 from orbiframe_polygons.room import Budget
 from orbiframe_polygons.text import Text, plain, shown, table
 
@@ -264,7 +264,7 @@ class _Model:
         length = float(np.linalg.norm(axis))
         if not length:
             self._refuse(card, "the axis of the rotation has the length 0")
-        turn = _turn(axis / length, float(angle))
+        turn = rotation(axis / length, float(angle))
         return turn, (shift - start) @ turn + start
 
     def _named(self, card: Card, key: str) -> str:
@@ -279,14 +279,6 @@ class _Model:
 
 def _own(block: Numbered) -> Part | None:
     return None if block.is_empty else block.part()
-
-
-def _turn(axis: Floats, angle: float) -> Floats:
-    """The rotation about a unit axis, for rows on its left (Rodrigues)."""
-    x, y, z = axis.tolist()
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    turn: Floats = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
-    return turn.T
 
 
 def _line(text: Text, word: int) -> int:

@@ -14,7 +14,7 @@ from orbiframe_polygons.elements.gmsh_cells import BELOW, CURVED, FACES, NAMES, 
 from orbiframe_polygons.elements.gmsh_source import Bytes, Source, Words
 from orbiframe_polygons.elements.numbered import Numbered, tell_passed
 from orbiframe_polygons.parts import polyhedron_of
-from orbiframe_polygons.text import plain, shown, table, with_line_feeds
+from orbiframe_polygons.text import plain, shown, table
 
 Ints = NDArray[np.intp]
 
@@ -57,7 +57,7 @@ def _text(path: Path, text: bytes, block: Numbered) -> None:
         found = SECTION.search(text, at)
         if found is None or text[at : found.start()].strip():
             raise FormatError(
-                f"{path}, line {line}: found {shown(text[at:].split(None, 1)[0])}, but a section such as $Nodes is required"
+                f"{path}, line {line}: found {shown(text[at:].split(None, 1)[0])}, but a section must come"
             )
         name = found[1]
         line += text.count(b"\n", at, found.end())
@@ -101,7 +101,9 @@ def _binary(path: Path, data: bytes, head: re.Match[bytes], block: Numbered) -> 
             return
         found = SECTION.match(data, at)
         if found is None:
-            raise FormatError(f"{path}, byte {at}: found {shown(data[at : at + 20])}, but a section such as $Nodes is required")
+            raise FormatError(
+                f"{path}, byte {at}: found {shown(data[at : at + 20])}, but a section such as $Nodes is required"
+            )
         name = found[1]
         reader = _reader(path, name, version)
         if reader is not None:
@@ -142,7 +144,9 @@ def _reader(path: Path, name: bytes, version: str) -> Callable[[Source, Numbered
         return None
     if name == b"ParametricNodes" or name in (b"Nodes", b"Elements", b"NOD", b"ELM"):
         raise FormatError(f"{path}: the section ${name.decode()} does not belong to MSH of version {version}")
-    raise FormatError(f"{path}: the section {shown(b'$' + name)} is not known, or changes what others mean; it is not read")
+    raise FormatError(
+        f"{path}: the section {shown(b'$' + name)} is not known, or changes what others mean; it is not read"
+    )
 
 
 def _points(x: NDArray[np.float64], y: NDArray[np.float64], z: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -279,7 +283,9 @@ def _nodes_41(source: Source, block: Numbered) -> None:
 def _parameters(source: Source, dimension: int, parametric: int) -> int:
     """How many parameters each node of an entity has."""
     if not 0 <= dimension <= 3 or parametric not in (0, 1):
-        source.refuse(f"found nodes of the dimension {dimension} with the mark {parametric}; is it the version it says?")
+        source.refuse(
+            f"found nodes of the dimension {dimension} with the mark {parametric}; is it the version it says?"
+        )
     return dimension * parametric
 
 

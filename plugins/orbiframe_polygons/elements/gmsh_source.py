@@ -42,7 +42,9 @@ class Words:
         """The next rows as columns."""
         size = len(kinds) * rows
         if rows < 0 or size > len(self.values) - self.at:
-            self.refuse(f"{rows} rows of {len(kinds)} numbers are declared, but the section ends; is the file cut short?")
+            self.refuse(
+                f"{rows} rows of {len(kinds)} numbers are declared, but the section ends; is the file cut short?"
+            )
         block = self.values[self.at : self.at + size].reshape(rows, len(kinds))
         columns = [column if kind == "d" else self._whole(column) for kind, column in zip(kinds, block.T, strict=True)]
         self.at += size

@@ -53,6 +53,10 @@ class Section:
     place: str
     rows: NDArray[Any]
 
+    def place_of(self, _: int) -> str:
+        """The place of the table, for any of its numbers."""
+        return self.place
+
 
 def read(path: Path) -> Polyhedron:
     """The triangles and quadrilaterals of a Medit file; coordinates in the plane get the height 0.
@@ -78,7 +82,7 @@ def _polyhedron(path: Path, sections: Iterator[Section]) -> Polyhedron:
             points = section.rows[:, :-1].astype(np.float64)
             block.add_nodes(np.arange(1, len(points) + 1), np.pad(points, ((0, 0), (0, 3 - points.shape[1]))))
         elif section.name in FACES:
-            rows = whole(section.rows, lambda row, place=section.place: f"{place}, row {row + 1}")
+            rows = whole(section.rows, section.place_of)
             # The elements have no numbers; faces of different kinds must not seem to be one.
             names = np.arange(len(rows)) + (2**40 if section.name == "Quadrilaterals" else 0)
             block.add_faces(names, rows[:, :-1])
@@ -106,7 +110,9 @@ def _text(path: Path, text: bytes) -> Iterator[Section]:
     words = list(WORD.finditer(text))
     head = text[: words[0].start()] if words else text
     if not words or words[0][0].lower() != b"meshversionformatted" or head.strip():
-        raise FormatError(f"{path}, line 1: found {shown(text[:20])}, but a Medit file starts with MeshVersionFormatted")
+        raise FormatError(
+            f"{path}, line 1: found {shown(text[:20])}, but a Medit file starts with MeshVersionFormatted"
+        )
     names = {name.lower(): name for name in (*FACES, *SOLIDS, *HARMLESS, *DIRECTIONS, *CODES.values(), "Edges")}
     dimension, line, at = 3, 1, 0
     for k, word in enumerate(words):
@@ -132,7 +138,9 @@ def _text(path: Path, text: bytes) -> Iterator[Section]:
                 f"{max(0, len(values) - 1)} numbers follow; is the file cut short?"
             )
         yield Section(name, place, values[1:].reshape(-1, width))
-    raise FormatError(f"{path}, line {text.rstrip().count(chr(10).encode()) + 1}: the file ends without 'End'; is it cut short?")
+    raise FormatError(
+        f"{path}, line {text.rstrip().count(chr(10).encode()) + 1}: the file ends without 'End'; is it cut short?"
+    )
 
 
 def _single(place: str, name: str, values: NDArray[np.float64], dimension: int) -> int:
@@ -151,7 +159,11 @@ def _binary(path: Path, data: bytes) -> Iterator[Section]:
     version = struct.unpack_from(f"{order}i", data, 4)[0] if len(data) >= 8 else 0
     if version not in (1, 2, 3, 4):
         raise FormatError(f"{path}, byte 4: this is Medit of version {version}, but versions 1 to 4 are read")
-    real, wide, pointer = ("f4" if version == 1 else "f8"), ("i8" if version == 4 else "i4"), ("q" if version > 2 else "i")
+    real, wide, pointer = (
+        ("f4" if version == 1 else "f8"),
+        ("i8" if version == 4 else "i4"),
+        ("q" if version > 2 else "i"),
+    )
     dimension, at = 3, 8
 
     def number(kind: str, place: int) -> int:
@@ -185,7 +197,9 @@ def _binary(path: Path, data: bytes) -> Iterator[Section]:
         if count < 0 or end > len(data) or (following and following != end):
             raise FormatError(f"{place}: {count} rows of {name} do not fit into the file; is it cut short?")
         rows = np.frombuffer(data, dtype, count, body)
-        yield Section(name, place, np.concatenate([rows["f"].astype(np.float64), rows["i"]], axis=1) if floats else rows["i"])
+        yield Section(
+            name, place, np.concatenate([rows["f"].astype(np.float64), rows["i"]], axis=1) if floats else rows["i"]
+        )
         at = end
 
 

@@ -51,7 +51,9 @@ def read(path: Path) -> Polyhedron:
             points.append((card.real(3), card.real(4), card.real(5)))
         elif card.name in FACES:
             size = FACES[card.name]
-            faces[size].append([len(faces[3]) + len(faces[4]), card.integer(1)] + [card.integer(3 + k) for k in range(size)])
+            faces[size].append(
+                [len(faces[3]) + len(faces[4]), card.integer(1)] + [card.integer(3 + k) for k in range(size)]
+            )
         elif card.name == "GRDSET":
             for field in (1, 2):
                 _require_plain(card, field)

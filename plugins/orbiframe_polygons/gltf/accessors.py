@@ -44,7 +44,9 @@ class Accessors:
         node = self.nodes[number]
         kind, code = node.word("type"), node.index("componentType")
         if kind not in kinds or code not in TYPES or TYPES[code][1] not in types:
-            node.refuse(f"the type {kind[:20]!r} of components {code} is not read here; {' or '.join(kinds)} is required")
+            node.refuse(
+                f"the type {kind[:20]!r} of components {code} is not read here; {' or '.join(kinds)} is required"
+            )
         raw = self._dense(node, TYPES[code], WIDTHS[kind])
         if node.has("sparse"):
             raw = self._patched(node, raw, TYPES[code])

@@ -25,7 +25,17 @@ Ints = NDArray[np.intp]
 
 TRIANGLE, POLYGON, PIXEL, QUAD = 5, 7, 8, 9
 FACES = {TRIANGLE: 3, POLYGON: 0, PIXEL: 4, QUAD: 4}
-BELOW = {0: "empty cells", 1: "vertices", 2: "vertices", 3: "lines", 4: "lines", 21: "lines", 35: "lines", 68: "lines", 75: "lines"}
+BELOW = {
+    0: "empty cells",
+    1: "vertices",
+    2: "vertices",
+    3: "lines",
+    4: "lines",
+    21: "lines",
+    35: "lines",
+    68: "lines",
+    75: "lines",
+}
 SOLIDS = {10: "tetrahedra", 11: "voxels", 12: "hexahedra", 13: "wedges", 14: "pyramids", 15: "prisms", 16: "prisms",
           24: "tetrahedra", 25: "hexahedra", 26: "wedges", 27: "pyramids", 29: "hexahedra", 32: "wedges",
           33: "hexahedra", 37: "pyramids", 41: "solids", 42: "polyhedra", 71: "tetrahedra", 72: "hexahedra",
@@ -88,7 +98,9 @@ class Cells:
             bad = tail[((tail < 0) | (tail >= len(self.points))).argmax()]
             self._refuse(f"a face names vertex {bad}, but the vertices are 0 to {len(self.points) - 1}")
         if (sizes < 3).any():
-            self._refuse(f"face {int((sizes < 3).argmax())} has {sizes[sizes < 3][0]} corners, but 3 are required at least")
+            self._refuse(
+                f"face {int((sizes < 3).argmax())} has {sizes[sizes < 3][0]} corners, but 3 are required at least"
+            )
         return Part(self.points, sizes, tail)
 
     def _sizes_of(self, offsets: Ints, connectivity: Ints) -> Ints:

@@ -170,7 +170,7 @@ def _cells(source: _Source, dataset: str) -> Cells:
             if not np.isfinite(cells.points).all():
                 source.refuse("a coordinate is not finite")
         elif name in POLYDATA and dataset == "POLYDATA" and len(words) == 3:
-            _add(source, cells, name, *_lists(source, words))
+            _add(cells, name, *_lists(source, words))
         elif name == "CELLS" and dataset == "UNSTRUCTURED_GRID" and len(words) == 3:
             listed = _lists(source, words)
         elif name == "CELL_TYPES" and dataset == "UNSTRUCTURED_GRID" and len(words) == 2:
@@ -189,7 +189,7 @@ def _cells(source: _Source, dataset: str) -> Cells:
     return cells
 
 
-def _add(source: _Source, cells: Cells, name: str, offsets: Ints, connectivity: Ints) -> None:
+def _add(cells: Cells, name: str, offsets: Ints, connectivity: Ints) -> None:
     if name == "POLYGONS":
         cells.add_polygons(offsets, connectivity)
     elif name == "TRIANGLE_STRIPS":
@@ -243,5 +243,7 @@ def _skip_field(source: _Source, arrays: int) -> None:
             line = source.line()
         words = (line or "").split()
         if len(words) != 4:
-            source.refuse(f"found {shown((line or '').encode())}, but the name, counts and type of an array are required")
+            source.refuse(
+                f"found {shown((line or '').encode())}, but the name, counts and type of an array are required"
+            )
         source.skip_words_or_strings(source.count(words[1]) * source.count(words[2]), words[3])

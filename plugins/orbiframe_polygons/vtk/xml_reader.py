@@ -65,7 +65,10 @@ class _Tree:
         self._within.append(name)
         if not outer:
             if name != "VTKFile" or attributes.get("type") not in KINDS:
-                self._refuse(line, f"found {name[:40]} of the type {attributes.get('type', '')[:40]!r}; {' and '.join(KINDS)} are read")
+                self._refuse(
+                    line,
+                    f"found {name[:40]} of the type {attributes.get('type', '')[:40]!r}; {' or '.join(KINDS)} is read",
+                )
             self.root = attributes
         elif name == "Piece":
             if "Source" in attributes:
