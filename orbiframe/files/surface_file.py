@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import json
-import os
 import zipfile
 import zlib
 from collections.abc import Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +15,7 @@ from numpy.typing import NDArray
 from orbiframe.components.options import checked_options
 from orbiframe.errors import FormatError
 from orbiframe.files.gate import Components
+from orbiframe.files.outputs import output
 from orbiframe.files.places import require_readable
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -39,17 +38,8 @@ def save_surface(surface: OrbifoldSurface, path: Path) -> None:
     It holds the mesh, the map, the coefficients, and the name and options of the basis, which is built anew from them
     when loaded: the same input gives the same basis. Raises FormatError where the file cannot be written.
     """
-    path = Path(path)
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        with unfinished.open("wb") as file:
-            np.savez_compressed(file, **_arrays(surface))
-        unfinished.replace(path)
-    except OSError as error:
-        raise FormatError(f"{path}: the surface cannot be written: {error.strerror}") from error
-    finally:
-        with suppress(OSError):
-            unfinished.unlink()
+    with output(Path(path)) as made, made.open("wb") as file:
+        np.savez_compressed(file, **_arrays(surface))
 
 
 def load_surface(path: Path, registry: Components) -> OrbifoldSurface:

@@ -112,7 +112,7 @@ def _glued(cut: Cut) -> Polyhedron:
     twin[order[0::2]], twin[order[1::2]] = order[1::2], order[0::2]
     return replace(
         mesh,
-        vertices=_grown(mesh.vertices, cut),
+        vertices=_grown_rows(mesh.vertices, cut),
         offsets=np.arange(len(cut.corners) + 1) * 3,
         tail=cut.vertex[start],
         twin=twin,
@@ -124,8 +124,10 @@ def _glued(cut: Cut) -> Polyhedron:
 
 
 def _grown(table: Floats | None, cut: Cut) -> Floats | None:
+    return None if table is None else _grown_rows(table, cut)
+
+
+def _grown_rows(table: Floats, cut: Cut) -> Floats:
     """A table of the vertices with rows for the new ones, the means of the two that each lies between."""
-    if table is None:
-        return None
     ends = cut.polyhedron.tail[cut.between]
     return np.concatenate([table, table[ends[:, 0]] / 2 + table[ends[:, 1]] / 2])

@@ -32,7 +32,8 @@ def without_shared_diagonals(cut: Cut) -> Cut:
         return cut
     faces = cut.face[shared // 3]
     taken = _Taken(cut)
-    parts, between = {}, []
+    parts: dict[int, list[Triangle]] = {}
+    between: list[tuple[int, int]] = []
     for first, stop in _runs(faces):
         piece = _Piece(cut, int(faces[first]), taken, between)
         for side in shared[first:stop]:
@@ -128,7 +129,7 @@ class _Piece:
         (ax, ay), (bx, by), (cx, cy) = (self._place[corner] for corner in triangle)
         area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
         sides = (bx - ax) ** 2 + (by - ay) ** 2, (cx - bx) ** 2 + (cy - by) ** 2, (ax - cx) ** 2 + (ay - cy) ** 2
-        return area > _THIN * max(sides)
+        return bool(area > _THIN * max(sides))
 
 
 def _joined(cut: Cut, parts: dict[int, list[Triangle]], between: list[tuple[int, int]]) -> Cut:
