@@ -108,9 +108,10 @@ def overrides(args: argparse.Namespace) -> list[str]:
 def _exact(args: argparse.Namespace, config: Config, registry: Registry) -> bool:
     """Whether the surface itself is written and not a mesh on it: where the format and the functions allow it."""
     from orbiframe.files.gate import exports
-    from orbiframe.surfaces.exact_patches import has_exact_patches
+    from orbiframe.functions.basis import PiecewiseBasis
 
-    return exports(args.output, registry) and has_exact_patches(registry.load("basis", config.basis.name))
+    basis = registry.load("basis", config.basis.name)
+    return exports(args.output, registry) and isinstance(basis, type) and issubclass(basis, PiecewiseBasis)
 
 
 def _require_destinations(args: argparse.Namespace, config: Config, registry: Registry) -> None:

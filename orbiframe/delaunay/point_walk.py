@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from orbiframe.compiled.decorator import compiled
+from orbiframe.compiled.matrices import copy, multiply
 from orbiframe.delaunay.lawson_flips import turn
-from orbiframe.delaunay.triangle_arrays import TriangleArrays, arrays_of, bare, copy, corner, move, multiply
+from orbiframe.delaunay.triangle_arrays import TriangleArrays, arrays_of, corner, move
 from orbiframe.errors import GeometryError
 from orbiframe.meshes.edge_paths import curve_order
 from orbiframe.orbifolds.atlas import Points
@@ -77,7 +78,7 @@ def _entrances(triangles: TriangleArrays, triangulation: GeodesicTriangulation) 
     return face, route
 
 
-@bare
+@compiled(arrays=False)
 def walk(triangles, face, x, route, seed):  # type: ignore[no-untyped-def]
     """Follow a point x from a triangle to the one that it lies in; x and route change with the frames.
 
@@ -107,10 +108,10 @@ def walk(triangles, face, x, route, seed):  # type: ignore[no-untyped-def]
     return -1, seed
 
 
-@njit(cache=True)
+@compiled
 def _locate(triangles, order, patch, x, first, first_route, found_face, found_x):  # type: ignore[no-untyped-def]
     """Fill in the triangles and coordinates of points; returns -1, or the first point that was not found."""
-    route, y = np.eye(3), np.empty(3)
+    route, y = np.empty((3, 3)), np.empty(3)
     face, seed, last, chain = 0, 1, -1, 0
     for i in order:
         if patch[i] != last or chain >= LONGEST_CHAIN:
@@ -123,5 +124,5 @@ def _locate(triangles, order, patch, x, first, first_route, found_face, found_x)
         if face < 0:
             return i
         found_face[i] = face
-        found_x[i] = y
+        found_x[i, 0], found_x[i, 1], found_x[i, 2] = y[0], y[1], y[2]
     return -1

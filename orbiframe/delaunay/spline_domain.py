@@ -10,7 +10,7 @@ from orbiframe.delaunay.site_triangulation import delaunay_of_vertices
 from orbiframe.delaunay.sites import lloyd
 from orbiframe.delaunay.voronoi import region_areas
 from orbiframe.errors import FitError
-from orbiframe.meshes.edge_paths import edge_graph, farthest_points
+from orbiframe.meshes.edge_paths import edge_graph, farthest_points, outermost_vertex
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 from orbiframe.triangulations.triangulation import Triangulation
@@ -29,8 +29,7 @@ def spline_domain(triangulation: Triangulation, vertices: int, *, smoothing: int
     where an edge would be almost half of a great circle). Raises FitError if the mesh has fewer distinct vertices;
     MapError if the sphere has too few sites or the map has folds.
     """
-    x = triangulation.polyhedron.vertices
-    first = int(np.argmax(np.linalg.norm(x - x.mean(axis=0), axis=1)))
+    first = outermost_vertex(triangulation.polyhedron)
     chosen = farthest_points(edge_graph(triangulation.polyhedron), vertices, first=first).chosen
     if vertices < 1 or len(chosen) < vertices:
         raise FitError(
@@ -38,7 +37,7 @@ def spline_domain(triangulation: Triangulation, vertices: int, *, smoothing: int
             "least 1 and at most as many, or refine the mesh first"
         )
     start = GeodesicTriangulation.of_map(triangulation)
-    number = np.empty(len(x), dtype=np.intp)
+    number = np.empty(len(triangulation.polyhedron.vertices), dtype=np.intp)
     number[triangulation.polyhedron.triangles] = start.vertex
     found = delaunay_of_vertices(start, number[chosen]).triangulation
     if found.geometry.curvature > 0 and found.edge_lengths.max() > _LONGEST:

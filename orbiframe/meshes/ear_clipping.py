@@ -9,8 +9,9 @@ from __future__ import annotations
 from heapq import heapify, heappop, heappush
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from orbiframe.compiled.decorator import compiled
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -42,7 +43,7 @@ def _along_a_curve(p: Floats) -> NDArray[np.int64]:
     return code
 
 
-@njit(cache=True)
+@compiled
 def _is_convex(p, before, after, k):  # type: ignore[no-untyped-def]
     """Whether a corner is convex by more than the rounding of the points, whose coordinates are at most about 1."""
     a, b, c = p[before[k]], p[k], p[after[k]]
@@ -50,7 +51,7 @@ def _is_convex(p, before, after, k):  # type: ignore[no-untyped-def]
     return u * y - v * x > _ROUNDING * (abs(u) + abs(v) + abs(x) + abs(y))
 
 
-@njit(cache=True)
+@compiled
 def _clip(p, order):  # type: ignore[no-untyped-def]
     n = len(p)
     before, after = np.arange(-1, n - 1), np.arange(1, n + 1)
@@ -90,7 +91,7 @@ def _clip(p, order):  # type: ignore[no-untyped-def]
     return triangles, looked
 
 
-@njit(cache=True)
+@compiled
 def _next(heap, version):  # type: ignore[no-untyped-def]
     """The corner of the first entry that still holds, or -1."""
     while len(heap):
@@ -100,7 +101,7 @@ def _next(heap, version):  # type: ignore[no-untyped-def]
     return -1
 
 
-@njit(cache=True)
+@compiled
 def _length(p, before, after, k):  # type: ignore[no-untyped-def]
     """The diagonal that cuts a corner off, in steps so large that rounding does not tell equal ones apart."""
     a, c = before[k], after[k]
@@ -108,27 +109,34 @@ def _length(p, before, after, k):  # type: ignore[no-untyped-def]
     return np.int64(np.rint(np.log(max(square, 1e-300)) / _ALIKE))
 
 
-@njit(cache=True)
+@compiled
 def _tree(p, order, before, after):  # type: ignore[no-untyped-def]
     """Boxes (2 m, 4) of the reflex corners in an order: node k holds nodes 2k and 2k + 1; and the leaf of a corner."""
     n, m = len(p), 1
     while m < n:
         m *= 2
     boxes = np.empty((2 * m, 4))
-    boxes[:, :2], boxes[:, 2:] = np.inf, -np.inf
+    for node in range(2 * m):
+        _empty(boxes, node)
     leaf = np.empty(n, dtype=np.intp)
     for place in range(n):
         k = order[place]
         leaf[k] = m + place
         if not _is_convex(p, before, after, k):
-            boxes[m + place, :2] = p[k]
-            boxes[m + place, 2:] = p[k]
+            for axis in range(2):
+                boxes[m + place, axis] = boxes[m + place, 2 + axis] = p[k, axis]
     for node in range(m - 1, 0, -1):
         _join(boxes, node)
     return boxes, leaf
 
 
-@njit(cache=True)
+@compiled
+def _empty(boxes, node):  # type: ignore[no-untyped-def]
+    for axis in range(2):
+        boxes[node, axis], boxes[node, 2 + axis] = np.inf, -np.inf
+
+
+@compiled
 def _join(boxes, node):  # type: ignore[no-untyped-def]
     one, other = boxes[2 * node], boxes[2 * node + 1]
     for k in range(2):
@@ -136,19 +144,19 @@ def _join(boxes, node):  # type: ignore[no-untyped-def]
         boxes[node, 2 + k] = max(one[2 + k], other[2 + k])
 
 
-@njit(cache=True)
+@compiled
 def _remove(boxes, node):  # type: ignore[no-untyped-def]
     """Take a corner out of the tree, once."""
     if boxes[node, 0] > boxes[node, 2]:
         return
-    boxes[node, :2], boxes[node, 2:] = np.inf, -np.inf
+    _empty(boxes, node)
     node //= 2
     while node:
         _join(boxes, node)
         node //= 2
 
 
-@njit(cache=True)
+@compiled
 def _is_ear(p, before, after, ear, order, boxes):  # type: ignore[no-untyped-def]
     """Whether a corner is convex and no reflex corner lies in its triangle, and how many boxes were looked at."""
     a, c = before[ear], after[ear]
@@ -175,7 +183,7 @@ def _is_ear(p, before, after, ear, order, boxes):  # type: ignore[no-untyped-def
     return True, looked
 
 
-@njit(cache=True)
+@compiled
 def _apart(box, a, b):  # type: ignore[no-untyped-def]
     """Whether a box lies to the right of the line from a to b: its corner that is farthest to the left does."""
     u, v = b[0] - a[0], b[1] - a[1]
@@ -184,7 +192,7 @@ def _apart(box, a, b):  # type: ignore[no-untyped-def]
     return u * (y - a[1]) - v * (x - a[0]) < 0.0
 
 
-@njit(cache=True)
+@compiled
 def _beside(box, a, b, c):  # type: ignore[no-untyped-def]
     """Whether a box does not meet that of a triangle."""
     for k in range(2):  # noqa: SIM110  (compiled without generators)

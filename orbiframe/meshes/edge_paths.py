@@ -6,9 +6,9 @@ import heapq
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from orbiframe.compiled.decorator import compiled
 from orbiframe.meshes.polyhedron import Polyhedron
 
 Floats = NDArray[np.float64]
@@ -89,6 +89,12 @@ def farthest_points(graph: Graph, count: int, *, first: int = 0, radius: float =
     return Spacing(*_farthest(graph.start, graph.neighbour, graph.length, count, first, radius))
 
 
+def outermost_vertex(polyhedron: Polyhedron) -> int:
+    """The vertex farthest from the mean of all vertices: a tip, where farthest points may well begin."""
+    x = polyhedron.vertices
+    return int(np.argmax(np.linalg.norm(x - x.mean(axis=0), axis=1)))
+
+
 def covering_points(graph: Graph, radius: float) -> Ints:
     """Vertices at least `radius` from each other, with all other vertices nearer than that to one of them.
 
@@ -126,7 +132,7 @@ def curve_order(x: Floats) -> Ints:
     return np.argsort(square[:, 0] | square[:, 1] << np.uint64(1) | half, kind="stable")
 
 
-@njit(cache=True)
+@compiled
 def _farthest(start, neighbour, length, count, first, radius):  # type: ignore[no-untyped-def]
     size = len(start) - 1
     distance, owner = np.full(size, np.inf), np.full(size, -1)
@@ -157,7 +163,7 @@ def _farthest(start, neighbour, length, count, first, radius):  # type: ignore[n
     return chosen[:found].copy(), owner, distance
 
 
-@njit(cache=True)
+@compiled
 def _covering(start, neighbour, length, radius):  # type: ignore[no-untyped-def]
     distance = np.full(len(start) - 1, radius)
     chosen = [np.intp(0) for _ in range(0)]
@@ -179,7 +185,7 @@ def _covering(start, neighbour, length, radius):  # type: ignore[no-untyped-def]
     return np.array(chosen)
 
 
-@njit(cache=True)
+@compiled
 def _joining(count, tail, head):  # type: ignore[no-untyped-def]
     above = np.arange(count)
     joins = np.zeros(len(tail), dtype=np.bool_)
@@ -197,7 +203,7 @@ def _joining(count, tail, head):  # type: ignore[no-untyped-def]
     return joins
 
 
-@njit(cache=True)
+@compiled
 def _forest(start, neighbour, length, sources):  # type: ignore[no-untyped-def]
     size = len(start) - 1
     distance, owner = np.full(size, np.inf), np.full(size, -1)

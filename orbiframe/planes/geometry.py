@@ -130,19 +130,6 @@ class Geometry(ABC):
         return np.stack([base, ahead, self.turn(base, ahead)], axis=-1)
 
     @final
-    def isometry_between(
-        self, x: ArrayLike, y: ArrayLike, to_x: ArrayLike, to_y: ArrayLike, parity: ArrayLike = 1
-    ) -> Floats:
-        """The isometry of given parity that takes x to to_x and the direction from x to y to that from to_x to to_y.
-
-        It takes y to to_y where the two distances agree. Points (..., 3), parity (...) of +1 or -1.
-        """
-        mirror = np.ones((*np.shape(parity), 3))
-        mirror[..., 2] = parity
-        source, target = self.flag(x, self.log(x, y)), self.flag(to_x, self.log(to_x, to_y))
-        return (target * mirror[..., None, :]) @ self.inverse(source)
-
-    @final
     def translation(self, length: ArrayLike, angle: ArrayLike = 0.0) -> Floats:
         """The isometry that moves the origin by `length` in direction `angle` and that line in itself, (..., 3, 3)."""
         distance, direction = np.broadcast_arrays(np.asarray(length, dtype=float), np.asarray(angle, dtype=float))

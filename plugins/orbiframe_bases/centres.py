@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import FitError, Geometry, Triangulation, UsageError
-from orbiframe.meshes import Spacing, dijkstra_forest, edge_graph, farthest_points
+from orbiframe.meshes import Spacing, dijkstra_forest, edge_graph, farthest_points, outermost_vertex
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -21,9 +21,8 @@ def require_positive(basis: str, **options: float) -> None:
 
 def spread(triangulation: Triangulation, size: int) -> Spacing:
     """Centres by 3D edge lengths, from the vertex farthest from the centroid on."""
-    vertices = triangulation.polyhedron.vertices
-    first = int(np.argmax(np.linalg.norm(vertices - vertices.mean(axis=0), axis=1)))
-    spacing = farthest_points(edge_graph(triangulation.polyhedron), size, first=first)
+    mesh = triangulation.polyhedron
+    spacing = farthest_points(edge_graph(mesh), size, first=outermost_vertex(mesh))
     if len(spacing.chosen) < size:
         raise FitError(
             f"{size} functions need as many distinct vertices as centres, and the mesh has {len(spacing.chosen)}; "

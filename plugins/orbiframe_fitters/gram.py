@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from numba import njit
+from orbiframe.compiled import compiled
 
 
-@njit(cache=True)
+@compiled
 def add_gram(start, column, value, weight, gram):  # type: ignore[no-untyped-def]
     """Add A^T W A to the upper triangle of a dense matrix, for a sparse matrix A by rows and weights W of its rows."""
     for i in range(len(start) - 1):

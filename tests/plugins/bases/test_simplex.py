@@ -7,10 +7,9 @@ import pytest
 import spline_checks as checks
 from orbiframe_bases.ear_clipping import clip_ears
 from orbiframe_bases.simplex import Simplex
-from orbiframe_bases.simplex_kernels import simplex_splines
 from orbiframe_bases.simplex_program import cloud_program, subset_program
 from orbiframe_geometries.h2 import H2
-from simplex_checks import jump, recursion, reproduction_error
+from simplex_checks import jump, recursion, reproduction_error, simplex_splines
 
 from orbiframe import FitError, Points, UsageError
 from orbiframe.splines import bernstein_values

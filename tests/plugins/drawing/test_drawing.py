@@ -15,7 +15,7 @@ from orbiframe_drawing.group_picture import draw_group, group_picture
 from orbiframe_drawing.models import model_of
 from orbiframe_drawing.page import Page
 from orbiframe_drawing.picture import Curve, Label, Picture, Raster, Shape, beside, chained, circle, polygon
-from orbiframe_drawing.polygon import cell_of
+from orbiframe_drawing.polygon import polygon_of
 from orbiframe_drawing.svg import svg_text
 from orbiframe_drawing.tiles import nearest_tiles, tiles_within
 from reference_geometries import GEOMETRIES
@@ -37,7 +37,7 @@ def group_of(text):
 
 
 def nearest(group, count):
-    return nearest_tiles(group, cell_of(group), count)
+    return nearest_tiles(group, polygon_of(group), count)
 
 
 def points(geometry, seed, count=6, reach=2.0):
@@ -97,7 +97,7 @@ def test_outside_of_a_model_nothing_is_seen():
 def test_the_sphere_hides_what_is_behind():
     """The drawn part of a hemisphere has the area of the disc cut by half an ellipse."""
     model = model_of(S2)
-    corners = cell_of(group_of("aa")).corners
+    corners = polygon_of(group_of("aa")).corners
     (path,) = model.paths(corners[None])
     outline = np.concatenate([curve.at(np.linspace(0, 1, 200)[:-1]) for curve in path])
     x, y = outline.T
@@ -128,7 +128,7 @@ def test_word_lengths_are_the_growth_of_the_tiling(text, sides):
 
 
 def test_lengths_in_the_square_lattice_are_sums_of_steps():
-    tiles = tiles_within(group_of("abAB"), cell_of(group_of("abAB")), 3.2)
+    tiles = tiles_within(group_of("abAB"), polygon_of(group_of("abAB")), 3.2)
     steps = np.abs(np.round(tiles.elements[:, 1:, 0])).sum(axis=1)
     # Near the border of the disc the way may lead out of it, never where both neighbours are within.
     assert (tiles.length == steps).all()
@@ -210,9 +210,9 @@ def test_arrows_are_laid_upon_one_another_by_the_pairings():
     """The arrows of a side and of its mate run the same way after the pairing, for both signs of letters."""
     for text in ("abABcdCD", "aabbcc", "abaB"):
         group = group_of(text)
-        word, cell = group.word, cell_of(group)
+        word, polygon = group.word, polygon_of(group)
         for side, mate in enumerate(word.mate):
-            ends = [cell.sides[k, 0][:: int(np.sign(word.letters[k]))] for k in (side, mate)]
+            ends = [polygon.sides[k, 0][:: int(np.sign(word.letters[k]))] for k in (side, mate)]
             moved = group.geometry.act(group.polygon.pairings[side], ends[1])
             assert moved == pytest.approx(ends[0], abs=1e-8)
 
@@ -291,15 +291,15 @@ ORDERS = {"*": 2, "x": 2, "22": 2, "*33": 6, "3x": 6, "2*": 4, "222": 4, "*222":
 @pytest.mark.parametrize("text", ORDERS)
 def test_cells_of_spherical_groups_have_the_area_of_the_sphere_over_the_order(text):
     group = orbifold_group(S2, ConwaySymbol.parse(text))
-    cell = cell_of(group)
-    fan = S2.triangle_area(S2.origin, cell.corners, np.roll(cell.corners, -1, axis=0))
+    polygon = polygon_of(group)
+    fan = S2.triangle_area(S2.origin, polygon.corners, np.roll(polygon.corners, -1, axis=0))
     assert fan.sum() == pytest.approx(4 * np.pi / ORDERS[text], rel=1e-9)
-    tiles = nearest_tiles(group, cell, 200)
+    tiles = nearest_tiles(group, polygon, 200)
     assert len(tiles.elements) == ORDERS[text]
     assert (tiles.length >= 0).all()
     # Across a side lies the tile of its neighbour: the side is nearer to no other.
-    distance = S2.distance(cell.middles, S2.origin)
-    assert S2.distance(cell.middles, cell.neighbours[:, :, 0]) == pytest.approx(distance, abs=1e-7)
+    distance = S2.distance(polygon.middles, S2.origin)
+    assert S2.distance(polygon.middles, polygon.neighbours[:, :, 0]) == pytest.approx(distance, abs=1e-7)
     assert group_picture(group).shapes
 
 
