@@ -22,10 +22,9 @@ def require_output(path: Path) -> None:
 
     Through a link it is the file behind the link. Devices, pipes and folders are never replaced.
     """
-    target = _behind_links(path)
-    folder = target.parent
     try:
-        there = path.stat() if os.path.lexists(path) and _exists(path) else None
+        folder = _behind_links(path).parent
+        there = path.stat() if _exists(path) else None
         if not folder.is_dir():
             raise FormatError(f"{path} cannot be written: there is no folder {folder}; make it first")
     except (OSError, ValueError) as error:
@@ -64,8 +63,8 @@ def output(path: Path) -> Iterator[Path]:
     block that leaves no file, and any OSError on the way; the old file is left as it was.
     """
     require_output(path)
-    target = _behind_links(path)
     try:
+        target = _behind_links(path)
         with temporary_folder(target.parent) as folder:
             made = folder / path.name
             yield made
