@@ -11,7 +11,8 @@ from orbiframe.cli.progress import Progress
 from orbiframe.cli.repairs import add_repairs, repaired, repairs_asked
 from orbiframe.cli.report import json_text, summary, write_report
 from orbiframe.components.registry import Registry
-from orbiframe.files.destination import require_destination, require_folder, require_other_file
+from orbiframe.files.destination import require_destination
+from orbiframe.files.outputs import require_apart, require_output
 
 if TYPE_CHECKING:
     from orbiframe.fitting.config import Config
@@ -114,9 +115,10 @@ def _exact(args: argparse.Namespace, config: Config, registry: Registry) -> bool
 
 
 def _require_destinations(args: argparse.Namespace, config: Config, registry: Registry) -> None:
+    outputs = {"-o": args.output, "--report": args.report, "--save": args.save}
+    plugins = {f"the plugin {path}": path for path in config.plugins}
+    require_apart(outputs, {"the input": args.mesh, "--config": args.config, **plugins})
     require_destination(args.output, registry, kind="exporter" if _exact(args, config, registry) else "writer")
-    require_other_file(args.output, args.mesh)
     for path in (args.report, args.save):
         if path is not None:
-            require_folder(path)
-            require_other_file(path, args.mesh)
+            require_output(path)

@@ -14,6 +14,7 @@ from orbiframe.cli.loops import add_loops, show_loops
 from orbiframe.cli.report import plain
 from orbiframe.cli.streams import choice, read
 from orbiframe.components.registry import Registry
+from orbiframe.components.shown_text import shown
 from orbiframe.errors import OrbiframeError, UsageError
 
 Described = dict[str, Any]
@@ -94,7 +95,7 @@ def _show_table(files: list[Path], describe: Describe) -> int:
 def _row(path: Path, found: Described) -> tuple[str, ...]:
     """The entries of a file: name, counts, surface and defects; name and error."""
     if "error" in found:
-        return str(path), f"error: {found['error'].removeprefix(f'{path}').lstrip(':, ')}"
+        return shown(str(path)), shown(f"error: {found['error'].removeprefix(f'{path}').lstrip(':, ')}")
     counts = (str(found[key]) for key in ("vertices", "edges", "faces"))
     defects = ", ".join(f"{defect['count']} {defect['kind']}" for defect in found["defects"])
-    return str(path), *counts, found["surface"], defects or "none"
+    return shown(str(path)), *counts, found["surface"], defects or "none"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import suppress
 from typing import TextIO
 
 
@@ -14,11 +15,11 @@ class Progress:
 
     def __init__(self, stream: TextIO | None = None, *, quiet: bool = False) -> None:
         self._stream = sys.stderr if stream is None else stream
-        self._shown = not quiet and self._stream.isatty()
+        self._shown = not quiet and self._stream is not None and self._stream.isatty()
 
     def __call__(self, stage: str, seconds: float | None) -> None:
         """Say that a stage begins, or how long it took."""
-        if self._shown and seconds is None:
-            print(f"{stage} …", end="", file=self._stream, flush=True)
-        elif self._shown:
-            print(f"\r{stage:<16}{seconds:7.2f} s", file=self._stream, flush=True)
+        if self._shown:
+            with suppress(OSError):
+                text = f"{stage} …" if seconds is None else f"\r{stage:<16}{seconds:7.2f} s\n"
+                print(text, end="", file=self._stream, flush=True)

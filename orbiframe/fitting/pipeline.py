@@ -27,6 +27,7 @@ from orbiframe.meshes.orientation import oriented
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.regular_triangles import regular_triangles
 from orbiframe.meshes.surface_type import SurfaceType, without_unused_vertices
+from orbiframe.meshes.told_by_ends import require_told_by_ends
 from orbiframe.planes.geometry import Geometry
 from orbiframe.plugin import DEFAULT_MARKER
 from orbiframe.surfaces.surface import OrbifoldSurface
@@ -91,6 +92,7 @@ def fit(mesh: str | Path | Polyhedron, config: Config, registry: Registry, progr
     surface = replace(fitted.surface, origin=origin, scale=scale)
     density = config.output.refine or max(1, round(np.sqrt(_OUTPUT_FACES / triangles.face_count)))
     output = stages("tessellation", surface.tessellate, density)
+    require_told_by_ends(output, surface_type)
     faces = fitted.mapped.face_shapes(unit)
     summary = report(
         surface, surface_type, unit, config, fitted.samples, fitted.deviation, faces, output, stages.seconds
