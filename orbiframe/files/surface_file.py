@@ -77,6 +77,9 @@ _SHAPES: dict[str, tuple[type, tuple[int | str, ...]]] = {
     "origin": (np.float64, (3,)),
     "scale": (np.float64, ()),
 }
+# Arrays that some surfaces have.
+_OPTIONAL: dict[str, tuple[type, tuple[int | str, ...]]] = {"density": (np.float64, ("W",))}
+_KINDS = _SHAPES | _OPTIONAL
 
 
 def save_surface(surface: OrbifoldSurface, path: Path) -> None:
@@ -108,7 +111,7 @@ def load_surface(path: Path, registry: Components) -> OrbifoldSurface:
         with ArrayArchive(path) as archive:
             about = _read_about(archive, path)
             _require_shapes(archive.shapes)
-            arrays = {name: archive.read(name) for name in _SHAPES}
+            arrays = {name: archive.read(name) for name in _KINDS if name in archive.shapes}
         return _surface(arrays, about, registry, path)
     except BrokenLaw as error:
         raise FormatError(f"{path}: {error}; the file was changed or damaged: save the surface again") from error
@@ -151,7 +154,9 @@ def _no_number(name: str) -> float:
 def _require_shapes(shapes: Mapping[str, Shape]) -> None:
     """Raise BrokenLaw unless all arrays are there, of their types and of shapes that fit together."""
     lengths: dict[str, tuple[int, str]] = {}
-    for name, (type_, asked) in _SHAPES.items():
+    for name, (type_, asked) in _KINDS.items():
+        if name in _OPTIONAL and name not in shapes:
+            continue
         found = shapes[name]
         if found.type.newbyteorder("=") != np.dtype(type_):
             raise BrokenLaw(name, f"its numbers are {np.dtype(type_).name}, not {found.type.name}")
@@ -162,7 +167,7 @@ def _require_shapes(shapes: Mapping[str, Shape]) -> None:
             if length != known:
                 like = f", as in '{owner}'" if owner else ""
                 raise BrokenLaw(name, f"it is {found.shape}, but {known} is required{like}")
-    if extra := set(shapes) - set(_SHAPES) - {"about"}:
+    if extra := set(shapes) - set(_KINDS) - {"about"}:
         raise BrokenLaw(min(extra), "surface files have no such array")
 
 
@@ -178,7 +183,10 @@ def _surface(arrays: Arrays, about: About, registry: Components, path: Path) -> 
     atlas = require_atlas(arrays, geometry)
     orbifold = Orbifold(atlas, chi, about["orientable"], float(arrays["area"]))
     places = arrays["patch"], arrays["points"], arrays["transition"]
-    triangulation = Triangulation(orbifold, fine, *places, about["group"], about["weights"])
+    density = arrays.get("density")
+    if density is not None:
+        require(np.isfinite(density) & (density > 0), "density", "numbers are finite and positive")
+    triangulation = Triangulation(orbifold, fine, *places, about["group"], about["weights"], density)
     require_map(triangulation)
     coefficients, origin, scale = arrays["coefficients"], arrays["origin"], float(arrays["scale"])
     for name in ("coefficients", "origin", "scale"):
@@ -263,4 +271,9 @@ def _arrays(surface: OrbifoldSurface) -> dict[str, NDArray[Any]]:
         "origin": surface.origin,
         "scale": surface.scale,
     }
-    return {name: np.asarray(array, dtype=_SHAPES[name][0]) for name, array in found.items()}
+    found |= {name: array for name, array in _optional(surface).items() if array is not None}
+    return {name: np.asarray(array, dtype=_KINDS[name][0]) for name, array in found.items()}
+
+
+def _optional(surface: OrbifoldSurface) -> dict[str, NDArray[Any] | None]:
+    return {"density": surface.triangulation.density}

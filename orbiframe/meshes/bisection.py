@@ -83,6 +83,15 @@ class Bisection:
         fine[self.child[leaf]] = node[leaf]
         return fine
 
+    def origins(self) -> tuple[Ints, Floats]:
+        """A coarse triangle (V,) that holds each vertex of the fine mesh, and barycentric coordinates in it (V, 3)."""
+        count = self.coarse.face_count
+        corners = np.zeros((count, 3, 4))
+        corners[:, :, 0], corners[:, :, 1:] = np.arange(count)[:, None], np.eye(3)
+        fine = self.spread(corners).reshape(-1, 4)
+        first = np.unique(self.polyhedron.tail, return_index=True)[1]
+        return fine[first, 0].round().astype(np.intp), fine[first, 1:]
+
     def _levels(self) -> list[Ints]:
         """The nodes of the forest that are halved, those of each depth together, roots first."""
         levels = []
