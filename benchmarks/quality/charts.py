@@ -36,7 +36,9 @@ def figure_eight_bottle(u: jax.Array) -> jax.Array:
 def lawson_bottle(u: jax.Array) -> jax.Array:
     """Lawson's minimal Klein bottle tau(2, 1) of the 3-sphere, projected stereographically."""
     x, y = u[0] / 2, u[1]
-    p = jnp.stack([jnp.cos(2 * x) * jnp.cos(y), jnp.sin(2 * x) * jnp.cos(y), jnp.cos(x) * jnp.sin(y), jnp.sin(x) * jnp.sin(y)])
+    p = jnp.stack(
+        [jnp.cos(2 * x) * jnp.cos(y), jnp.sin(2 * x) * jnp.cos(y), jnp.cos(x) * jnp.sin(y), jnp.sin(x) * jnp.sin(y)]
+    )
     turned = _AWAY @ p
     return turned[1:] / (1 - turned[0])
 

@@ -20,35 +20,50 @@ from orbiframe.meshes.bisection import edge_length_for
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-ROUNDS = 6
-FAIRING = 1e-5
+ROUNDS = 10
+FAIRING = {"smooth": 1e-2, "scan": 1.0, "faces": 1e-4}  # each the best of some powers of ten
 _DATA = 15_000
 
 
-def fitted_loop(mesh: Polyhedron, smooth: bool, controls: int, faces: int) -> tuple[Floats, Ints]:
-    """A fine mesh on the Loop surface of about so many control points that is nearest to the vertices, or to the faces.
+def fitted_loop(mesh: Polyhedron, meant: str, controls: int, faces: int) -> tuple[Floats, Ints]:
+    """A fine mesh on the Loop surface that is nearest to the vertices, or to the faces where meant says so.
 
-    The control mesh is the mesh itself, its edges halved or collapsed until it has so many vertices. Every round finds
-    the nearest points on the surface and solves for the control points with a small squared Laplacian for fairness.
+    Every round finds the nearest points on the surface and solves for the control points, with a little of the squared
+    Laplacian of the Laplacian for fairness.
     """
     triangles = triangulated(mesh)
-    start, corners = control_mesh(triangles, controls)
+    start, corners = control_mesh(triangles, meant, controls)
     fine, limit = _limit(corners, len(start), faces)
     data = triangles.vertices
-    if not smooth:
+    if meant == "faces":
         data = np.concatenate([data, points_of_faces(triangles.vertices, triangles.triangles, _DATA)[1]])
     rough = _laplacian(corners, len(start))
+    energy = FAIRING[meant] * len(data) / limit.shape[1] * (rough.T @ rough) @ (rough.T @ rough)
     control = start
     for _ in range(ROUNDS):
-        control = _solved(data, control, fine, limit, rough)
+        control = _solved(data, control, fine, limit, energy)
     return limit @ control, fine
 
 
-def control_mesh(mesh: Polyhedron, controls: int) -> tuple[Floats, Ints]:
-    """The mesh with about so many vertices."""
-    if len(mesh.vertices) < 1.2 * controls:
+def control_mesh(mesh: Polyhedron, meant: str, controls: int) -> tuple[Floats, Ints]:
+    """The mesh with at most about so many vertices.
+
+    Edges are collapsed where it has more. Where it has fewer, it is subdivided by Loop's scheme as long as that leaves
+    it small enough if its vertices are meant; if its faces are, long edges are halved.
+    """
+    if len(mesh.vertices) > 1.2 * controls:
+        return _collapsed(mesh, controls)
+    if meant == "faces":
         fine = bisected(mesh, edge_length_for(mesh, controls), True).polyhedron
         return fine.vertices, fine.triangles
+    points, corners = mesh.vertices, mesh.triangles
+    while len(corners) < controls / 2:
+        step = subdivision.loop(corners, len(points))
+        points, corners = step.matrix @ points, step.faces
+    return points, corners
+
+
+def _collapsed(mesh: Polyhedron, controls: int) -> tuple[Floats, Ints]:
     meshes = pymeshlab.MeshSet(verbose=False)
     meshes.add_mesh(pymeshlab.Mesh(mesh.vertices, mesh.triangles))
     faces = mesh.face_count - 2 * (len(mesh.vertices) - controls)
@@ -71,16 +86,15 @@ def _laplacian(corners: Ints, count: int) -> csr_array:
     return csr_array(diags_array(1 / near.sum(axis=1)) @ near - diags_array(np.ones(count)))
 
 
-def _solved(data: Floats, control: Floats, fine: Ints, limit: csr_array, rough: csr_array) -> Floats:
+def _solved(data: Floats, control: Floats, fine: Ints, limit: csr_array, energy: csr_array) -> Floats:
     """The next control points. The bend of the surface inside of fine triangles is kept from the last ones."""
     foot = foot_points(Skin(limit @ control, fine, *_normals(limit @ control, fine)), data)
     rows = csr_array(
-        (foot.barycentric.ravel(), fine[foot.face].ravel(), 3 * np.arange(len(data) + 1)), shape=(len(data), len(limit @ control))
+        (foot.barycentric.ravel(), fine[foot.face].ravel(), 3 * np.arange(len(data) + 1)),
+        shape=(len(data), len(limit @ control)),
     )
     matrix = csr_array(rows @ limit)
     bend = foot.points - matrix @ control
-    energy = rough.T @ rough
-    energy = FAIRING * len(data) / limit.shape[1] * (energy + rough.T @ energy @ rough)
     return splu(csc_array(matrix.T @ matrix + energy)).solve(matrix.T @ (data - bend))
 
 

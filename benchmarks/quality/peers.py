@@ -25,10 +25,10 @@ _POINTS = 20_000
 
 
 class Task(NamedTuple):
-    """A mesh, and whether its vertices alone are meant (samples of a smooth shape) or its faces."""
+    """A mesh, and what is meant by it: "smooth", the vertices are on a smooth shape; "scan", near one; "faces"."""
 
     mesh: Polyhedron
-    smooth: bool
+    meant: str
 
 
 class Refused(Exception):
@@ -64,7 +64,9 @@ def _quadrilaterals(mesh: Polyhedron) -> tuple[Floats, Ints]:
     return step.matrix @ mesh.vertices, step.faces
 
 
-def _subdivided(scheme: Callable[[Ints, int], subdivision.Step], points: Floats, faces: Ints, least: int = FACES) -> tuple[Floats, Ints]:
+def _subdivided(
+    scheme: Callable[[Ints, int], subdivision.Step], points: Floats, faces: Ints, least: int = FACES
+) -> tuple[Floats, Ints]:
     while len(faces) < least:
         step = scheme(faces, len(points))
         points, faces = step.matrix @ points, step.faces
@@ -89,7 +91,7 @@ def poisson(task: Task) -> tuple[Floats, Ints]:
     mesh = triangulated(task.mesh)
     _require_sides(mesh)
     normal = np.cross(*np.moveaxis(np.diff(mesh.vertices[mesh.triangles], axis=1), 1, 0))
-    if task.smooth:
+    if task.meant != "faces":
         points, normals = mesh.vertices, _at_vertices(mesh, normal)
     else:
         face, points = points_of_faces(mesh.vertices, mesh.triangles, _POINTS)
@@ -127,7 +129,7 @@ def _run_meshlab(mesh: pymeshlab.Mesh, name: str, **options: object) -> tuple[Fl
 
 def loop_fit(task: Task) -> tuple[Floats, Ints]:
     """A Loop surface of about 1000 control points, fitted by least squares."""
-    return fitted_loop(task.mesh, task.smooth, CONTROLS, FACES)
+    return fitted_loop(task.mesh, task.meant, CONTROLS, FACES)
 
 
 METHODS: dict[str, Callable[[Task], tuple[Floats, Ints]]] = {

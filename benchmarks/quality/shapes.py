@@ -34,9 +34,11 @@ class Shape:
     truth: Truth | None = None
 
     @property
-    def smooth(self) -> bool:
-        """Whether the vertices are samples of a smooth shape, known or not."""
-        return self.truth is not None or self.kind == "organic"
+    def meant(self) -> str:
+        """What the mesh is: "scan", "smooth" where its vertices are samples of a smooth shape, or "faces"."""
+        if self.kind == "scan":
+            return "scan"
+        return "smooth" if self.truth is not None or self.kind == "organic" else "faces"
 
 
 def _level(field: fields.Field, reach: tuple[float, float, float], step: float) -> Level:
@@ -46,7 +48,11 @@ def _level(field: fields.Field, reach: tuple[float, float, float], step: float) 
 
 PAIR = _level(fields.melted_tori([(-1.2, 0), (1.2, 0)]), (2.9, 1.7, 0.7), 0.05)
 CROSS = _level(fields.melted_tori([(0, 0), (2.4, 0), (-2.4, 0), (0, 2.4), (0, -2.4)]), (4.1, 4.1, 0.7), 0.06)
-RING = _level(fields.melted_tori([(1.3 * np.cos(t), 1.3 * np.sin(t)) for t in np.arange(3) * 2 * np.pi / 3]), (3.0, 3.0, 0.7), 0.06)
+RING = _level(
+    fields.melted_tori([(1.3 * np.cos(t), 1.3 * np.sin(t)) for t in np.arange(3) * 2 * np.pi / 3]),
+    (3.0, 3.0, 0.7),
+    0.06,
+)
 TANGLE = _level(fields.tanglecube, (3, 3, 3), 0.08)
 SCHWARZ = _level(fields.schwarz, (6.6, 6.6, 6.6), 0.18)
 STARFISH = _level(fields.starfish, (2.5, 2.5, 1.3), 0.05)
@@ -66,6 +72,12 @@ def _thinned(truth: Level, step: float, count: int) -> Polyhedron:
     )
     found = meshes.current_mesh()
     return Polyhedron.from_faces(truth.onto(found.vertex_matrix()), found.face_matrix().astype(np.intp))
+
+
+def _halved(mesh: Polyhedron) -> Polyhedron:
+    """Quadrilaterals cut alike, from the first corner."""
+    a, b, c, d = mesh.tail.reshape(-1, 4).T
+    return Polyhedron.from_faces(mesh.vertices, np.concatenate([np.stack(f, axis=1) for f in ((a, b, c), (a, c, d))]))
 
 
 def _noisy(mesh: Polyhedron, share: float = _NOISE) -> Polyhedron:
@@ -126,15 +138,16 @@ def _stairs(x: Floats) -> NDArray[np.bool_]:
 SHAPES = (
     Shape("torus 12 x 8", "smooth", lambda: charts.wound(charts.torus, 12, 8), charts.TORUS),
     Shape("torus 24 x 12", "smooth", lambda: charts.wound(charts.torus, 24, 12), charts.TORUS),
+    Shape("torus 24 x 12, triangles", "smooth", lambda: _halved(charts.wound(charts.torus, 24, 12)), charts.TORUS),
     Shape("torus 288 irregular", "smooth", lambda: charts.scattered_torus(288), charts.TORUS),
     Shape("torus 1000 irregular", "smooth", lambda: charts.scattered_torus(1000), charts.TORUS),
     Shape("sphere 162", "smooth", lambda: charts.icosphere(4), SPHERE),
     Shape("ellipsoid 642 irregular", "smooth", lambda: charts.scattered_ellipsoid(642, 1, 0.7, 0.5), ELLIPSOID),
     Shape("genus 2, 1000", "smooth", lambda: PAIR.net(0.2), PAIR),
-    Shape("genus 2, 600 irregular", "smooth", lambda: _thinned(PAIR, 0.1, 600), PAIR),
+    Shape("genus 2, 600 irregular", "smooth", lambda: _thinned(PAIR, 0.08, 600), PAIR),
     Shape("genus 2, 9000", "smooth", lambda: PAIR.net(0.07), PAIR),
     Shape("genus 3, 1500", "smooth", lambda: RING.net(0.2), RING),
-    Shape("genus 5, 900", "smooth", lambda: CROSS.net(0.33), CROSS),
+    Shape("genus 5, 1000", "smooth", lambda: CROSS.net(0.28), CROSS),
     Shape("genus 5, 7000", "smooth", lambda: CROSS.net(0.12), CROSS),
     Shape("tanglecube", "smooth", lambda: TANGLE.net(0.3), TANGLE),
     Shape("Schwarz P", "smooth", lambda: SCHWARZ.net(0.6), SCHWARZ),
@@ -142,7 +155,12 @@ SHAPES = (
     Shape("starfish 1500 irregular", "smooth", lambda: _thinned(STARFISH, 0.05, 1500), STARFISH),
     Shape("knotted tube", "smooth", lambda: charts.wound(charts.knotted_tube, 120, 10), charts.KNOT),
     Shape("Boy's surface", "one-sided", lambda: charts.boy_mesh(10), charts.BOY),
-    Shape("figure-eight bottle", "one-sided", lambda: charts.wound(charts.figure_eight_bottle, 40, 20, True), charts.FIGURE_EIGHT),
+    Shape(
+        "figure-eight bottle",
+        "one-sided",
+        lambda: charts.wound(charts.figure_eight_bottle, 40, 20, True),
+        charts.FIGURE_EIGHT,
+    ),
     Shape("Lawson's bottle", "one-sided", lambda: charts.wound(charts.lawson_bottle, 32, 32, True), charts.LAWSON),
     Shape("crosscap on a torus", "one-sided", _file("meshes", "crosscap_torus_k1.off")),
     Shape("three crosscaps", "one-sided", _file("meshes", "crosscap_sphere_k3.off")),
