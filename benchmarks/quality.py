@@ -5,7 +5,8 @@ normals, curvature, triangles that meet, processor seconds. Results go to a JSON
 come, and a run goes on where the last one stopped. `--quick`: six shapes. Needs `pip install .[benchmarks]`.
 
 A method of orbiframe is a basis with options: `--method "ps6 size=500 fitter.name=least-squares"`; `default` is what
-`orbiframe fit` does. Shapes of the folder `shared` beside the repository are left out where it is absent.
+`orbiframe fit` does, and `linear` before a basis, or alone, one linear fit to the faces. Shapes of the folder `shared`
+beside the repository are left out where it is absent.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ from orbiframe import Polyhedron, surface_type
 from orbiframe.errors import FormatError, OrbiframeError
 
 FOLDER = Path(__file__).parents[1] / "build" / "quality"
-OURS = ("default", "gaussian width=1.7", "gaussian width=2.2", "ps2", "ps6")
+OURS = ("default", "ps6", "linear", "linear ps6")
 QUICK_METHODS = ("default", "ps6", "Loop", "butterfly", "LS3")
 
 
@@ -58,7 +59,7 @@ def measured(method: str, shape: Shape, mesh: Polyhedron, tile: Path | None) -> 
     if not np.isfinite(skin.vertices).all():
         return Result(*said, seconds=seconds, reason="a coordinate is not finite", day=today())
     if tile:
-        pictures.tile(skin.vertices, skin.triangles, tile, skin.normals)
+        pictures.tile(skin.vertices, skin.triangles, tile, pictures.view_of(mesh))
     found = measures.errors(skin, mesh, shape.truth)
     curvature = None if np.isnan(found.curvature) else found.curvature
     crossing = None if found.crossing < 0 else found.crossing

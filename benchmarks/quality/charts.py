@@ -8,11 +8,11 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
-from quality.truths import Chart
 from scipy.spatial import ConvexHull, Delaunay
 
 from orbiframe import Polyhedron
 from orbiframe.meshes import refine
+from quality.truths import Chart
 
 Floats = NDArray[np.float64]
 Place = Callable[[jax.Array], jax.Array]
@@ -91,7 +91,7 @@ def _wound_faces(around: int, across: int, mirrored: bool) -> NDArray[np.intp]:
 
 
 def scattered_torus(count: int, seed: int = 0) -> Polyhedron:
-    """So many vertices at random on the torus of radii 3 and 1, none too near to others, Delaunay in its conformal map."""
+    """So many vertices at random on the torus of radii 3 and 1, none too near to others, with Delaunay triangles."""
     points = _scattered(np.random.default_rng(seed), count, _torus_candidates)
     high = _conformal(points[:, 1])
     flat = np.stack([points[:, 0] / FULL, (high - _conformal(-np.pi)) / _PERIOD], axis=1) % 1

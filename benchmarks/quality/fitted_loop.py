@@ -6,16 +6,16 @@ import igl
 import numpy as np
 import pymeshlab
 from numpy.typing import NDArray
-from quality import subdivision
-from quality.skins import Skin
-from quality.face_points import points_of_faces
-from quality.foot_points import foot_points
 from scipy.sparse import csc_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from orbiframe import Polyhedron
 from orbiframe.meshes import bisected, triangulated
 from orbiframe.meshes.bisection import edge_length_for
+from quality import subdivision
+from quality.face_points import points_of_faces
+from quality.foot_points import foot_points
+from quality.skins import Skin
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

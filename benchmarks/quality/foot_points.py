@@ -7,13 +7,14 @@ from typing import NamedTuple
 import igl
 import numpy as np
 from numpy.typing import NDArray
+
 from quality.skins import Skin
 
 Floats = NDArray[np.float64]
 
 
 class FootPoints(NamedTuple):
-    """The triangle (n,), barycentric coordinates (n, 3), and points (n, 3) of the surface itself that belong to them."""
+    """The triangle (n,), barycentric coordinates (n, 3), and the points (n, 3) of the surface that belong to them."""
 
     face: NDArray[np.intp]
     barycentric: Floats
@@ -23,8 +24,8 @@ class FootPoints(NamedTuple):
 def foot_points(skin: Skin, x: Floats) -> FootPoints:
     """The nearest points of the triangles, lifted by half of what the planes at the corners lie above them.
 
-    On a quadric the half is what the surface itself bulges over its triangles (compare Phong tessellation, Boubekeur and
-    Alexa 2008).
+    On a quadric the half is what the surface itself bulges over its triangles (compare Phong tessellation, Boubekeur
+    and Alexa 2008).
     """
     _, face, flat = igl.point_mesh_squared_distance(x, skin.vertices, skin.triangles.astype(np.int64))
     corners = skin.triangles[face]

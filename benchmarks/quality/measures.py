@@ -8,13 +8,13 @@ import igl
 import numpy as np
 from igl.copyleft import cgal
 from numpy.typing import NDArray
+
+from orbiframe import Polyhedron
+from orbiframe.meshes import triangulated
 from quality.face_points import points_of_faces
 from quality.foot_points import foot_points
 from quality.skins import Skin
 from quality.truths import Truth
-
-from orbiframe import Polyhedron
-from orbiframe.meshes import triangulated
 
 Floats = NDArray[np.float64]
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from quality.skins import Skin
 
 from orbiframe import Config, OrbifoldSurface, Polyhedron, Registry, fit
 from orbiframe.meshes import refine
+from quality.skins import Skin
 
 
 @cache
@@ -16,11 +16,20 @@ def _registry() -> Registry:
     return Registry.discover()
 
 
+# What makes of a fit one linear fit to the faces, on one map, whatever the mesh is.
+LINEAR: tuple[str, ...] = ()
+
+
 def overrides_of(method: str) -> list[str]:
-    """ "ps6 size=500 fitter.name=least-squares" as overrides; a key without a table belongs to the basis."""
-    first, *rest = method.split()
+    """The overrides of "ps6 size=500 fitter.name=least-squares".
+
+    "default" is no basis at all; a key without a table belongs to the basis; "linear" before it, or alone, is `LINEAR`.
+    """
+    words = method.split()
+    linear = list(LINEAR) if words[0] == "linear" else []
+    first, *rest = words[words[0] == "linear" :] or ["default"]
     name = [] if first == "default" else [f"basis.name={first}"]
-    return name + [text if "." in text.partition("=")[0] else f"basis.{text}" for text in rest]
+    return linear + name + [text if "." in text.partition("=")[0] else f"basis.{text}" for text in rest]
 
 
 def fitted(method: str, mesh: Polyhedron) -> OrbifoldSurface:

@@ -1,4 +1,4 @@
-"""Other ways to a smooth surface: subdivision, screened Poisson reconstruction, Loop surfaces fitted by least squares."""
+"""Other ways to a smooth surface: subdivision, Poisson reconstruction, Loop surfaces fitted by least squares."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from typing import NamedTuple
 import numpy as np
 import pymeshlab
 from numpy.typing import NDArray
-from quality import subdivision
-from quality.fitted_loop import fitted_loop
-from quality.face_points import points_of_faces
-from quality.skins import Skin, measured_skin
 
 from orbiframe import Polyhedron, surface_type
 from orbiframe.meshes import triangulated
+from quality import subdivision
+from quality.face_points import points_of_faces
+from quality.fitted_loop import fitted_loop
+from quality.skins import Skin, measured_skin
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

@@ -23,19 +23,18 @@ _ROWS = 6
 _CLAY = {"color": "#c9d6e4", "specular": 0.5, "specular_power": 30, "diffuse": 0.8, "ambient": 0.1}
 
 
-def tile(vertices: Floats, triangles: NDArray[np.intp], path: Path, normals: Floats | None = None) -> None:
-    """A picture of a surface from above its thinnest side; flat faces with edges where no normals are given."""
+View = list[tuple[float, ...]]
+
+
+def tile(vertices: Floats, triangles: NDArray[np.intp], path: Path, view: View, *, flat: bool = False) -> None:
+    """A picture of a surface; flat: its faces with their edges."""
     plotter = pv.Plotter(off_screen=True, window_size=(_SIDE, _SIDE))
     plotter.set_background("white")
     mesh = pv.PolyData.from_regular_faces(vertices, triangles)
-    edges = (
-        {"show_edges": True, "line_width": 1}
-        if normals is None
-        else {"smooth_shading": True, "split_sharp_edges": False}
-    )
-    plotter.add_mesh(mesh, **_CLAY, **edges)
-    plotter.camera_position = _view(vertices)
-    plotter.camera.zoom(1.3)
+    style = {"show_edges": True, "line_width": 1} if flat else {"smooth_shading": True, "split_sharp_edges": False}
+    plotter.add_mesh(mesh, **_CLAY, **style)
+    plotter.camera_position = view
+    plotter.camera.zoom(1.45)
     plotter.screenshot(path)
     plotter.close()
 
@@ -43,15 +42,17 @@ def tile(vertices: Floats, triangles: NDArray[np.intp], path: Path, normals: Flo
 def input_tile(mesh: Polyhedron, path: Path) -> None:
     """The mesh itself."""
     cut = triangulated(mesh)
-    tile(cut.vertices, cut.triangles, path)
+    tile(cut.vertices, cut.triangles, path, view_of(mesh), flat=True)
 
 
-def _view(vertices: Floats) -> list[tuple[float, ...]]:
+def view_of(mesh: Polyhedron) -> View:
+    """A view of a mesh and of all its surfaces, from above its thinnest side."""
+    vertices = mesh.vertices
     middle = (vertices.max(axis=0) + vertices.min(axis=0)) / 2
     _, axes = np.linalg.eigh(np.cov((vertices - middle).T))
     sight = axes[:, 0] + 0.55 * axes[:, 1] + 0.25 * axes[:, 2]
     sight *= np.sign(sight[np.argmax(np.abs(sight))])
-    return [tuple(middle + 2 * np.linalg.norm(np.ptp(vertices, axis=0)) * sight), tuple(middle), tuple(axes[:, 1])]
+    return [tuple(middle + 2 * mesh.diagonal * sight / np.linalg.norm(sight)), tuple(middle), tuple(axes[:, 1])]
 
 
 def sheets(
@@ -62,7 +63,7 @@ def sheets(
     for number, start in enumerate(range(0, len(shapes), _ROWS)):
         rows = shapes[start : start + _ROWS]
         figure, axes = plt.subplots(
-            len(rows), len(methods) + 1, figsize=(2.6 * (len(methods) + 1), 2.7 * len(rows)), squeeze=False
+            len(rows), len(methods) + 1, figsize=(2.3 * (len(methods) + 1), 2.5 * len(rows)), squeeze=False
         )
         for axis in axes.ravel():
             axis.axis("off")
@@ -73,7 +74,7 @@ def sheets(
                     folder / tile_name(shape, method),
                     f"{shape if j == 0 else method}\n{labels.get((shape, method), '')}",
                 )
-        figure.subplots_adjust(0, 0, 1, 0.96, 0.01, 0.12)
+        figure.subplots_adjust(0, 0, 1, 0.97, 0, 0.1)
         made.append(folder / f"sheet_{number + 1}.png")
         figure.savefig(made[-1], dpi=80)
         plt.close(figure)

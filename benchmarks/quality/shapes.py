@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pymeshlab
 from numpy.typing import NDArray
-from quality import charts, fields
-from quality.truths import Chart, Level, Truth
 
 from orbiframe import Polyhedron, Registry, read
-from orbiframe.meshes import oriented, orient, refine, triangulated
+from orbiframe.meshes import orient, refine, triangulated
+from quality import charts, fields
+from quality.truths import Level, Truth
 
 Floats = NDArray[np.float64]
 
@@ -26,7 +25,7 @@ _NOISE = 0.002
 
 @dataclass(frozen=True)
 class Shape:
-    """kind: smooth, scan, organic, boxes, CAD, voxels or one-sided; truth: None where the faces are all that is known."""
+    """A mesh by name. kind: the heading that it stands under; truth: None where the faces are all that is known."""
 
     name: str
     kind: str
@@ -95,7 +94,7 @@ def _file(folder: str, name: str) -> Callable[[], Polyhedron]:
 
 
 def _voxels(inside: Callable[[Floats], NDArray[np.bool_]], side: int) -> Polyhedron:
-    """The boundary of the cubes of a grid whose centres are inside, as squares; the grid is (-1, 1)^3 in side^3 cubes."""
+    """The boundary of those of the side^3 cubes of (-1, 1)^3 whose centres are inside, as squares."""
     grid = np.array(list(product(range(side), repeat=3)))
     full = np.zeros((side + 2,) * 3, bool)
     full[1:-1, 1:-1, 1:-1] = inside((2 * grid + 1) / side - 1).reshape((side,) * 3)

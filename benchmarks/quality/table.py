@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
+
 from quality.results import Result
 
 By = dict[str, dict[str, Result]]
@@ -46,7 +47,7 @@ def table(
 
 
 def summary(by: By, methods: Sequence[str]) -> Iterator[str]:
-    """Of every kind of shape, the geometric mean of the position's errors (over how many, where a surface is missing)."""
+    """Of every kind of shape, the geometric mean of the errors of position (of how many, where one is missing)."""
     yield _line(["kind", "shapes", *methods])
     yield _line(["---"] * (len(methods) + 2))
     for kind in dict.fromkeys(next(iter(row.values())).kind for row in by.values()):

@@ -10,11 +10,11 @@ from typing import NamedTuple, Protocol
 import jax
 import numpy as np
 from numpy.typing import NDArray
-from quality.fields import Field
-from quality.nets import surface_net
 from scipy.spatial import cKDTree
 
 from orbiframe import Polyhedron
+from quality.fields import Field
+from quality.nets import surface_net
 
 Floats = NDArray[np.float64]
 jax.config.update("jax_enable_x64", True)
