@@ -24,3 +24,14 @@ def orbiframe_components() -> list[Component]:
         for name, (module, summary, suffixes) in FORMATS.items()
         for kind, verb in (("reader", "read"), ("writer", "write"))
     ]
+
+
+@hookimpl
+def orbiframe_warm_up() -> list[str]:
+    """Large texts, read and written."""
+    return [
+        "convert large.off large.obj",
+        "info large.obj",
+        "convert large.off large.stl",
+        "info large.stl",
+    ]

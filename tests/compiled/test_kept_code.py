@@ -42,6 +42,19 @@ def aided(x):
 """
 
 
+class Heard:
+    """The names of the functions that are compiled."""
+
+    def __init__(self) -> None:
+        self.names: list[str] = []
+
+    def begins(self, name: str) -> None:
+        self.names.append(name)
+
+    def ends(self) -> None:
+        assert compilation.underway == []
+
+
 class Package:
     """Two modules in a folder, imported anew after each edit, as a new process does; machine code in `kept`."""
 
@@ -51,11 +64,11 @@ class Package:
 
     def run(self, x: object = 1) -> tuple[object, list[str]]:
         """The result, and the functions that had to be compiled for it."""
-        helper, compiled = self._imported("helper"), []
+        helper, heard = self._imported("helper"), Heard()
         sys.modules["helper_of_a_test"] = helper
         caller = self._imported("caller")
-        with compilation.heard(compiled.append):
-            return caller.result(x), compiled
+        with compilation.heard(heard):
+            return caller.result(x), heard.names
 
     def edit(self, file: str, old: str, new: str) -> None:
         assert old in self.texts[file]
