@@ -7,6 +7,7 @@ from typing import Any
 from numba.core.registry import CPUDispatcher
 from numba.core.types.misc import unliteral
 
+from orbiframe.compiled import compilation
 from orbiframe.compiled.kept_code import KeptCode
 
 
@@ -23,6 +24,11 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
         self._cache = KeptCode(self)
         self._bare: set[tuple[Any, ...]] = set()
         self.wrapped = True
+
+    def compile(self, signature: Any) -> Any:
+        """The code for a signature: that of before, or kept code, or new code."""
+        with compilation.ended():
+            return super().compile(signature)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """What the compiler asks for where compiled code calls this function."""

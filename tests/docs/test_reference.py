@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from documents import ROOT, section, table_rows
 
-from orbiframe import FormatError
+from orbiframe import FormatError, fit
 from orbiframe.cli import plugin as commands
 from orbiframe.components.options import options_of
 from orbiframe.components.registry import Registry
@@ -143,7 +143,7 @@ def _formats() -> list[list[str]]:
 
 def test_every_key_of_the_report_is_in_its_table(registry):
     config = Config.load(overrides=["basis.size=50"])
-    report = pipeline.fit(ROOT / "datasets" / "cube.off", config, registry).report
+    report = fit(ROOT / "datasets" / "cube.off", config, registry).report
     keys = [unquoted(row[0]) for row in table_rows((REFERENCE / "report.md").read_text())]
     assert keys == list(_keys(report))
 
