@@ -52,7 +52,7 @@ def read(path: Path) -> Polyhedron:
     asked = int(widths.sum()) + size * elements
     if len(values) != asked:
         raise FormatError(
-            f"{path}: the zone asks for {asked} numbers, but {len(values)} follow; is it cut short, or has it two zones?"
+            f"{path}: the zone asks for {asked} numbers, but {len(values)} follow; is it cut short, or two zones?"
         )
     points = _points(head, values, widths, axes, nodes)
     tail = corners(values[len(values) - size * elements :] - 1, np.full(elements, size), nodes, lambda _: str(path))
