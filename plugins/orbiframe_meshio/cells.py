@@ -59,8 +59,8 @@ def save(path: Path, polyhedron: Polyhedron) -> None:
     """Write a file and read it again. Raises FormatError where that is not the same polyhedron."""
     if path.suffix.lower() not in POLYGONAL and polyhedron.face_sizes.max(initial=0) > 4:
         raise FormatError(
-            f"{path}: this format holds triangles and quads only, but a face has "
-            f"{polyhedron.face_sizes.max()} corners; write OFF, OBJ, PLY or VTU, or use convert --triangulate"
+            f"{path}: this format holds triangles and quads only, but one has {polyhedron.face_sizes.max()} corners; "
+            "write OFF, OBJ, PLY or VTU, or use convert --triangulate"
         )
     blocks = list(_blocks(polyhedron))
     dialect = DIALECTS.get(path.suffix.lower())

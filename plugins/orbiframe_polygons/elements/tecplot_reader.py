@@ -24,6 +24,8 @@ PACKINGS = {"FEPOINT": "POINT", "FEBLOCK": "BLOCK"}
 # Words of a zone that leave the mesh as it is.
 HARMLESS = {"T", "DT", "C", "STRANDID", "SOLUTIONTIME", "PARENTZONE", "AUXDATA", "VARLOCATION"}
 KNOWN = {"N", "NODES", "E", "ELEMENTS", "F", "ET", "DATAPACKING", "ZONETYPE"}
+# Records beside zones.
+RECORDS = {"GEOMETRY", "TEXT", "CUSTOMLABELS"}
 SKIPPED = ("DATASETAUXDATA", "VARAUXDATA", "FILETYPE")
 
 
@@ -52,8 +54,7 @@ def read(path: Path) -> Polyhedron:
     asked = int(widths.sum()) + size * elements
     if len(values) != asked:
         raise FormatError(
-            f"{path}: the zone asks for {asked} numbers, but {len(values)} follow; is it cut short, or has it two "
-            "zones?"
+            f"{path}: the zone asks for {asked} numbers, but {len(values)} follow; is it cut short, or two zones?"
         )
     points = _points(head, values, widths, axes, nodes)
     tail = corners(values[len(values) - size * elements :] - 1, np.full(elements, size), nodes, lambda _: str(path))
@@ -73,6 +74,8 @@ def _head(text: Text) -> tuple[int, _Head]:
         at, word = words[k]
         name = word.upper()
         value = words[k + 2][1] if k + 2 < len(words) and words[k + 1][1] == "=" else None
+        if name in RECORDS and value is None:
+            text.refuse(at, f"found {shown(word.encode())}, which is not read; save the zone alone")
         if name in ("TITLE", *SKIPPED) and (value is not None or name in SKIPPED):
             place = ""
             k += 3 if value is not None else 4
