@@ -179,15 +179,17 @@ class _Slide:
 
     def _slid_part(self, feet: _Feet, part: Samples, longest: Floats, coefficients: Floats) -> _Feet:
         step = foot_step(feet.jets, part.values, longest)
-        trial = self._feet(moved(self.basis.orbifold, feet.points, step), part.values, coefficients)
-        worse = np.flatnonzero(~(trial.distance < feet.distance))
-        if not len(worse):
-            return trial
-        back = feet.take(worse)
-        points = moved(self.basis.orbifold, back.points, step[worse] / 4)
-        again = self._feet(points, part.values[worse], coefficients)
-        still = np.flatnonzero(~(again.distance < back.distance))
-        return trial.replaced(worse, again.replaced(still, back.take(still)))
+        found = self._feet(moved(self.basis.orbifold, feet.points, step), part.values, coefficients)
+        for share in (1.0, 0.25):
+            worse = np.flatnonzero(~(found.distance < feet.distance))
+            if not len(worse):
+                return found
+            back = feet.take(worse)
+            step = share * foot_step(back.jets, part.values[worse], longest[worse], bent=False)
+            again = self._feet(moved(self.basis.orbifold, back.points, step), part.values[worse], coefficients)
+            found = found.replaced(worse, again)
+        worse = np.flatnonzero(~(found.distance < feet.distance))
+        return found.replaced(worse, feet.take(worse))
 
     def _change(self, feet: list[_Feet], coefficients: Floats, schedule: Schedule) -> Floats:
         """The change of the coefficients by one step of Gauss and Newton."""
