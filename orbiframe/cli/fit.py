@@ -11,7 +11,8 @@ from orbiframe.cli.progress import Progress
 from orbiframe.cli.repairs import add_repairs, repaired, repairs_asked
 from orbiframe.cli.report import json_text, summary, write_report
 from orbiframe.components.registry import Registry
-from orbiframe.files.destination import require_destination, require_folder, require_other_file
+from orbiframe.files.destination import require_destination
+from orbiframe.files.outputs import require_apart, require_output
 
 if TYPE_CHECKING:
     from orbiframe.fitting.config import Config
@@ -117,15 +118,17 @@ def overrides(args: argparse.Namespace) -> list[str]:
 def _exact(args: argparse.Namespace, config: Config, registry: Registry) -> bool:
     """Whether the surface itself is written and not a mesh on it: where the format and the functions allow it."""
     from orbiframe.files.gate import exports
-    from orbiframe.surfaces.exact_patches import has_exact_patches
+    from orbiframe.functions.basis import PiecewiseBasis
 
-    return exports(args.output, registry) and has_exact_patches(registry.load("basis", config.basis.name))
+    basis = registry.load("basis", config.basis.name)
+    return exports(args.output, registry) and isinstance(basis, type) and issubclass(basis, PiecewiseBasis)
 
 
 def _require_destinations(args: argparse.Namespace, config: Config, registry: Registry) -> None:
+    outputs = {"-o": args.output, "--report": args.report, "--save": args.save}
+    plugins = {f"the plugin {path}": path for path in config.plugins}
+    require_apart(outputs, {"the input": args.mesh, "--config": args.config, **plugins})
     require_destination(args.output, registry, kind="exporter" if _exact(args, config, registry) else "writer")
-    require_other_file(args.output, args.mesh)
     for path in (args.report, args.save):
         if path is not None:
-            require_folder(path)
-            require_other_file(path, args.mesh)
+            require_output(path)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -14,17 +13,9 @@ WORTH_A_WARNING = 6.0
 
 def write_report(path: Path, report: Mapping[str, Any]) -> None:
     """Write a report as JSON; the file appears complete or not at all."""
+    from orbiframe.files.outputs import write_text
+
     write_text(path, json_text(report) + "\n")
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a text; the file appears complete or not at all."""
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        unfinished.write_text(text, encoding="utf-8")
-        unfinished.replace(path)
-    finally:
-        unfinished.unlink(missing_ok=True)
 
 
 def json_text(report: Mapping[str, Any]) -> str:

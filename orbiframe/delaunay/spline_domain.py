@@ -10,10 +10,10 @@ from orbiframe.delaunay.site_triangulation import delaunay_of_vertices
 from orbiframe.delaunay.sites import lloyd
 from orbiframe.delaunay.voronoi import region_areas
 from orbiframe.errors import FitError
-from orbiframe.meshes.edge_paths import edge_graph, farthest_points
+from orbiframe.meshes.edge_paths import edge_graph, farthest_points, outermost_vertex
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
-from orbiframe.triangulations.girth import site_lengths
+from orbiframe.triangulations.local_girth import site_lengths
 from orbiframe.triangulations.triangulation import Triangulation
 
 # How much of the density of sites follows the girth: triangles of one star stay of one size where the map changes fast.
@@ -35,18 +35,16 @@ def spline_domain(
     of a great circle). Raises FitError if the mesh has fewer distinct vertices; MapError if the sphere has too few
     sites or the map has folds.
     """
-    x = triangulation.polyhedron.vertices
-    first = int(np.argmax(np.linalg.norm(x - x.mean(axis=0), axis=1)))
-    chosen = farthest_points(
-        edge_graph(triangulation.polyhedron, site_lengths(triangulation, grading)), vertices, first=first
-    ).chosen
+    mesh = triangulation.polyhedron
+    lengths = site_lengths(triangulation, grading)
+    chosen = farthest_points(edge_graph(mesh, lengths), vertices, first=outermost_vertex(mesh)).chosen
     if vertices < 1 or len(chosen) < vertices:
         raise FitError(
             f"{vertices} vertices are wanted for the splines, and the mesh has {len(chosen)} distinct ones; take at "
             "least 1 and at most as many, or refine the mesh first"
         )
     start = GeodesicTriangulation.of_map(triangulation)
-    number = np.empty(len(x), dtype=np.intp)
+    number = np.empty(len(triangulation.polyhedron.vertices), dtype=np.intp)
     number[triangulation.polyhedron.triangles] = start.vertex
     found = delaunay_of_vertices(start, number[chosen]).triangulation
     if found.geometry.curvature > 0 and found.edge_lengths.max() > _LONGEST:

@@ -24,6 +24,7 @@ from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.meshes.orientation import oriented
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.surface_type import without_unused_vertices
+from orbiframe.meshes.told_by_ends import require_told_by_ends
 from orbiframe.surfaces.surface import OrbifoldSurface
 
 _OUTPUT_FACES = 40_000
@@ -57,6 +58,7 @@ def fit(mesh: str | Path | Polyhedron, config: Config, registry: Registry, progr
     found = Approximations(mapping, config, stages).wanted()
     surface = replace(found.surface, origin=origin, scale=scale)
     output = stages("tessellation", _tessellated, surface, config.output.refine)
+    require_told_by_ends(output, surface_type)
     inspection = stages("inspection", inspected, surface, output, config.output.refine is None)
     summary = report(surface, surface_type, unit, config, found, output, inspection, stages.seconds)
     return Result(surface, output, summary)

@@ -19,7 +19,7 @@ from orbiframe.meshes.sizes import vector_areas
 from orbiframe.meshes.surface_type import SurfaceType
 from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.triangulations.face_shapes import FaceShapes
-from orbiframe.triangulations.girth import girth_radius
+from orbiframe.triangulations.local_girth import girth_radius
 from orbiframe.triangulations.lost_digits import crowding_of
 from orbiframe.triangulations.triangulation import Triangulation
 

@@ -13,7 +13,7 @@ from orbiframe.errors import FitError
 from orbiframe.functions.basis import Basis, DifferentiableBasis
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.meshes.subdivision import refine
+from orbiframe.meshes.told_by_ends import refined_by_ends
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.planes.quadrature import triangle_points
@@ -119,9 +119,10 @@ class OrbifoldSurface:
 
         bisected: every triangle of the refined mesh instead, so that triangles are even in size and small where the
         input is thin. Watertight and of the topology of the input: every vertex is evaluated once, and the faces are
-        glued as those of the input are. Normals point to the side from which the faces run counterclockwise.
+        glued as those of the input are. Where a file could not tell the edges by their ends, triangles are halved
+        first, see `refined_by_ends`. Normals point to the side from which the faces run counterclockwise.
         """
-        mesh = refine(self.triangulation.polyhedron if bisected else self.refinement.coarse, density)
+        mesh = refined_by_ends(self.triangulation.polyhedron if bisected else self.refinement.coarse, density)
         face, barycentric = mesh.face, mesh.barycentric
         if not bisected:
             face, barycentric = self.refinement.locate(face, barycentric)

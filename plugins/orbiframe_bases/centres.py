@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import FitError, Geometry, Triangulation, UsageError
-from orbiframe.meshes import Spacing, dijkstra_forest, edge_graph, farthest_points
+from orbiframe.meshes import Spacing, dijkstra_forest, edge_graph, farthest_points, outermost_vertex
 from orbiframe.triangulations import site_lengths
 
 Floats = NDArray[np.float64]
@@ -29,11 +29,9 @@ def require_share(basis: str, **options: float) -> None:
 
 def spread(triangulation: Triangulation, size: int, grading: float) -> Spacing:
     """Centres by 3D edge lengths and the density of `site_density`, from the vertex farthest from the centroid on."""
-    vertices = triangulation.polyhedron.vertices
-    first = int(np.argmax(np.linalg.norm(vertices - vertices.mean(axis=0), axis=1)))
-    spacing = farthest_points(
-        edge_graph(triangulation.polyhedron, site_lengths(triangulation, grading)), size, first=first
-    )
+    mesh = triangulation.polyhedron
+    graph = edge_graph(mesh, site_lengths(triangulation, grading))
+    spacing = farthest_points(graph, size, first=outermost_vertex(mesh))
     if len(spacing.chosen) < size:
         raise FitError(
             f"{size} functions need as many distinct vertices as centres, and the mesh has {len(spacing.chosen)}; "

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import csr_array, diags_array
+
+from orbiframe.compiled import compiled
 
 Floats = NDArray[np.float64]
 
@@ -39,7 +40,7 @@ class Gram:
         return [matrix + np.triu(matrix, 1).T for matrix in upper]
 
 
-@njit(cache=True)
+@compiled
 def _add(start, column, value, weight, gram):  # type: ignore[no-untyped-def]
     """Add the upper triangles of A^T W A to dense matrices, for a sparse matrix A by rows and weights W of its rows."""
     kinds = weight.shape[1]
