@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from fitted import fitted
 
-from orbiframe.functions.foot_points import around, foot_points, foot_step, moved
+from orbiframe.functions.feet import around, foot_points, foot_step, moved
 from orbiframe.orbifolds.atlas import Points
 
 
