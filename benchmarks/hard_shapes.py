@@ -91,8 +91,8 @@ def refined(mesh: Polyhedron) -> Polyhedron:
 
 def mapped(mesh: Polyhedron) -> Triangulation:
     """The map of a mesh by the component that a fit would take."""
-    name = pipeline.GEOMETRY[int(np.sign(surface_type(mesh).euler_characteristic))]
-    return REGISTRY.load("parametrizer", pipeline.PARAMETRIZER[name])(mesh, REGISTRY.load("geometry", name)(), None)
+    geometry = REGISTRY.geometry(surface_type(mesh).euler_characteristic)
+    return REGISTRY.load("parametrizer", pipeline.PARAMETRIZER[geometry.name])(mesh, geometry, None)
 
 
 def row(mesh: Polyhedron, plain: bool) -> str:
