@@ -29,7 +29,7 @@ def surface_of(name: str, basis: str, **options: object) -> OrbifoldSurface:
 def on_cells(surface: OrbifoldSurface, barycentric: np.ndarray) -> np.ndarray:
     """The surface at barycentric coordinates (m, 3) of each micro triangle, (N, m, 3), by its own evaluation."""
     basis = surface.basis
-    flat = np.einsum("mc,fkcj->fkmj", barycentric, basis.cells)
+    flat = np.einsum("mc,fkcj->fkmj", barycentric, basis.micro_triangles)
     inner = basis.domain.geometry.project(flat)
     x = np.einsum("fij,fkmj->fkmi", basis.domain.placement, inner)
     patch = np.broadcast_to(basis.domain.patch[:, None, None], x.shape[:3]).ravel()

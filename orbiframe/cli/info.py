@@ -83,13 +83,13 @@ def _show_table(args: argparse.Namespace, registry: Registry) -> int:
     widths = [max(len(row[k]) for row in rows if len(row) == len(head)) for k in range(len(head) - 1)]
     widths[0] = max(len(row[0]) for row in rows)
     for row in rows:
-        cells = [cell.ljust(width) for cell, width in zip(row, widths, strict=False)]
-        print("  ".join([*cells, *row[len(cells) :]]).rstrip())
+        entries = [entry.ljust(width) for entry, width in zip(row, widths, strict=False)]
+        print("  ".join([*entries, *row[len(entries) :]]).rstrip())
     return int(any("error" in found for _, found in outcomes))
 
 
 def _row(path: Path, found: Described) -> tuple[str, ...]:
-    """The cells of a file: name, counts, surface and defects; name and error."""
+    """The entries of a file: name, counts, surface and defects; name and error."""
     if "error" in found:
         return str(path), f"error: {found['error'].removeprefix(f'{path}').lstrip(':, ')}"
     counts = (str(found[key]) for key in ("vertices", "edges", "faces"))

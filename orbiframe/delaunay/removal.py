@@ -7,19 +7,30 @@ from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from orbiframe.delaunay.lawson_flips import legalise, outside, push, push_around, turn
-from orbiframe.delaunay.triangle_arrays import Cells, after, bare, before, copy, corner, flip, merge, move, multiply
+from orbiframe.delaunay.triangle_arrays import (
+    TriangleArrays,
+    after,
+    bare,
+    before,
+    copy,
+    corner,
+    flip,
+    merge,
+    move,
+    multiply,
+)
 from orbiframe.errors import MapError
 
 Ints = NDArray[np.intp]
 
 
-def remove(cells: Cells, vertices: ArrayLike) -> None:
-    """Take vertices out of Delaunay cells, in an order chosen by chance with a fixed seed.
+def remove(triangles: TriangleArrays, vertices: ArrayLike) -> None:
+    """Take vertices out of Delaunay triangles, in an order chosen by chance with a fixed seed.
 
     Raises MapError where what is left has no geodesic triangulation: sites in one half of a sphere.
     """
     order = np.random.default_rng(0).permutation(np.asarray(vertices, dtype=np.intp))
-    stuck = _remove(cells, order)
+    stuck = _remove(triangles, order)
     if stuck >= 0:
         raise MapError(
             f"the sites are too few for geodesic triangles: vertex {stuck} cannot be removed; on the sphere and the "
@@ -28,30 +39,30 @@ def remove(cells: Cells, vertices: ArrayLike) -> None:
 
 
 @njit(cache=True)
-def _remove(cells, order):  # type: ignore[no-untyped-def]
+def _remove(triangles, order):  # type: ignore[no-untyped-def]
     """Remove vertices; returns -1, or the first that could not be removed."""
     ring = (np.empty(64, dtype=np.intp), np.empty((64, 3)), np.empty(64, dtype=np.bool_))
     for vertex in order:
         top = 0
         while True:
-            degree, ring = _link(cells, vertex, ring)
+            degree, ring = _link(triangles, vertex, ring)
             if degree == 3:
                 break
-            e = _soonest(cells.curvature, corner(cells, cells.seat[vertex]), degree, ring)
+            e = _soonest(triangles.curvature, corner(triangles, triangles.seat[vertex]), degree, ring)
             if e < 0:
                 return vertex
-            flip(cells, e)
-            top = push_around(cells, top, e)
-        f = cells.seat[vertex] // 3
-        merge(cells, cells.seat[vertex])
+            flip(triangles, e)
+            top = push_around(triangles, top, e)
+        f = triangles.seat[vertex] // 3
+        merge(triangles, triangles.seat[vertex])
         for e in range(3 * f, 3 * f + 3):
-            top = push(cells, top, e)
-        legalise(cells, top, 1_000_000)
+            top = push(triangles, top, e)
+        legalise(triangles, top, 1_000_000)
     return -1
 
 
 @njit(cache=True)
-def _link(cells, vertex, ring):  # type: ignore[no-untyped-def]
+def _link(triangles, vertex, ring):  # type: ignore[no-untyped-def]
     """Walk counterclockwise round a vertex, in the frame of the triangle at its seat.
 
     Enters into `ring` the edges at the vertex, as halfedges; where they lead; whether to the vertex itself. Returns
@@ -60,21 +71,21 @@ def _link(cells, vertex, ring):  # type: ignore[no-untyped-def]
     """
     edge, x, loop = ring
     route, moved = np.eye(3), np.empty((3, 3))
-    slot, mirrored, degree = cells.seat[vertex], False, 0
-    while degree == 0 or slot != cells.seat[vertex]:
+    slot, mirrored, degree = triangles.seat[vertex], False, 0
+    while degree == 0 or slot != triangles.seat[vertex]:
         if degree == len(edge):
             edge, loop = np.concatenate((edge, edge)), np.concatenate((loop, loop))
             x = np.concatenate((x, x))
         end = before(slot) if mirrored else after(slot)
         edge[degree] = end if mirrored else slot
-        x[degree, 0], x[degree, 1], x[degree, 2] = move(cells.curvature, route, corner(cells, end))
-        loop[degree] = cells.vertex[end] == vertex
+        x[degree, 0], x[degree, 1], x[degree, 2] = move(triangles.curvature, route, corner(triangles, end))
+        loop[degree] = triangles.vertex[end] == vertex
         degree += 1
         way = slot if mirrored else before(slot)
-        multiply(route, cells.gluing[way], moved)
+        multiply(route, triangles.gluing[way], moved)
         copy(moved, route)
-        starts = mirrored != cells.same[way]
-        slot = after(cells.twin[way]) if starts else cells.twin[way]
+        starts = mirrored != triangles.same[way]
+        slot = after(triangles.twin[way]) if starts else triangles.twin[way]
         mirrored = starts
     return degree, (edge, x, loop)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from orbiframe.delaunay.site_triangulation import delaunay_of_vertices
 from orbiframe.delaunay.sites import lloyd
-from orbiframe.delaunay.voronoi import cell_areas
+from orbiframe.delaunay.voronoi import region_areas
 from orbiframe.errors import FitError
 from orbiframe.meshes.edge_paths import edge_graph, farthest_points
 from orbiframe.orbifolds.orbifold import Orbifold
@@ -43,7 +43,7 @@ def spline_domain(triangulation: Triangulation, vertices: int, *, smoothing: int
     found = delaunay_of_vertices(start, number[chosen]).triangulation
     if found.geometry.curvature > 0 and found.edge_lengths.max() > _LONGEST:
         return spline_domain(triangulation, vertices + 1, smoothing=smoothing)
-    return lloyd(found, smoothing, cell_areas(found) ** -2.0) if smoothing else found
+    return lloyd(found, smoothing, region_areas(found) ** -2.0) if smoothing else found
 
 
 def domain_for(

@@ -21,7 +21,7 @@ def _product(k, a, b, reverses, c, d):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, inline="always")
 def _parent_side(x0, x1, x2, covectors, size, heights):  # type: ignore[no-untyped-def]
-    """The first of the sides that x is farthest beyond; -1 for a point of the cell, -2 where rounding decides."""
+    """The first of the sides that x is farthest beyond; -1 for a point of the domain, -2 where rounding decides."""
     best = -np.inf
     for s in range(len(covectors)):
         heights[s] = covectors[s, 0] * x0 + covectors[s, 1] * x1 + covectors[s, 2] * x2
@@ -105,7 +105,7 @@ def grow(k, generators, mate, covectors, bounding, reach, rim, depth, room, most
     """All elements with |b|^2 <= reach and at most `depth` steps from the identity, breadth first.
 
     k: curvature; generators: a, b, reverses of the elements across the sides; covectors: (m, 3), see
-    `DirichletCell.bisectors`, the first `bounding` of them bound the cell. Where the image of the origin under the
+    `DirichletDomain.bisectors`, the first `bounding` of them bound the domain. Where the image of the origin under the
     inverse of g lies beyond side s, g times generator s is nearer to the identity. A product g h is kept if its parent
     is g, so no element comes twice and none is looked up.
 

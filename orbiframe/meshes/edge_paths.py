@@ -114,16 +114,16 @@ def joining_edges(count: int, tail: Ints, head: Ints) -> Bools:
 def curve_order(x: Floats) -> Ints:
     """Points of X in one frame, (n, 3), sorted along a space-filling curve, so that neighbours in the list are near.
 
-    Morton's curve in (x1, x2) on a grid of 2^31 by 2^31 cells over the points, one half of S^2 after the other.
+    Morton's curve in (x1, x2) on a grid of 2^31 by 2^31 squares over the points, one half of S^2 after the other.
     """
     if len(x) == 0:
         return np.zeros(0, dtype=np.intp)
     plane = x[:, 1:] - x[:, 1:].min(axis=0)
-    cell = (plane * ((2**31 - 1) / (plane.max() or 1.0))).astype(np.uint64)
+    square = (plane * ((2**31 - 1) / (plane.max() or 1.0))).astype(np.uint64)
     for shift, mask in _SPREAD_BITS:
-        cell = (cell | cell << np.uint64(shift)) & np.uint64(mask)
+        square = (square | square << np.uint64(shift)) & np.uint64(mask)
     half = (x[:, 0] < 0).astype(np.uint64) << np.uint64(62)
-    return np.argsort(cell[:, 0] | cell[:, 1] << np.uint64(1) | half, kind="stable")
+    return np.argsort(square[:, 0] | square[:, 1] << np.uint64(1) | half, kind="stable")
 
 
 @njit(cache=True)

@@ -55,7 +55,7 @@ def micro_heights(inverse, f, m, x0, x1, x2):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy")
-def micro_cell(inverse, f, x0, x1, x2):  # type: ignore[no-untyped-def]
+def micro_triangle(inverse, f, x0, x1, x2):  # type: ignore[no-untyped-def]
     """The micro triangle that holds a point, or the one it is least outside of."""
     best, least = 0, -np.inf
     for m in range(inverse.shape[1]):
@@ -69,7 +69,7 @@ def micro_cell(inverse, f, x0, x1, x2):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy")
-def fan_cell(fan, f, a, b, c):  # type: ignore[no-untyped-def]
+def fan_triangle(fan, f, a, b, c):  # type: ignore[no-untyped-def]
     """The micro triangle of a fan at coordinates in the whole triangle: edge e, or 2 e and 2 e + 1 beside its R."""
     # Written as choices of numbers, not of ways: a processor cannot foretell in which micro triangle the next point is.
     r0, r1, r2 = a * fan[f, 0], b * fan[f, 1], c * fan[f, 2]
@@ -89,9 +89,9 @@ def fan_cell(fan, f, a, b, c):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy")
-def _fan_coordinates(fan, f, cell, a, b, c):  # type: ignore[no-untyped-def]
+def _fan_coordinates(fan, f, micro, a, b, c):  # type: ignore[no-untyped-def]
     """Coordinates in a micro triangle of a fan from those in the whole triangle; linear in them."""
-    edge = cell if fan.shape[1] == 3 else cell // 2
+    edge = micro if fan.shape[1] == 3 else micro // 2
     if edge == 0:
         height, start, end = c * fan[f, 2], a - c * fan[f, 2] / fan[f, 0], b - c * fan[f, 2] / fan[f, 1]
     elif edge == 1:
@@ -101,7 +101,7 @@ def _fan_coordinates(fan, f, cell, a, b, c):  # type: ignore[no-untyped-def]
     if fan.shape[1] == 3:
         return start, end, height
     mu, nu = fan[f, 3 + 2 * edge], fan[f, 4 + 2 * edge]
-    if cell % 2 == 0:
+    if micro % 2 == 0:
         return start - end / nu * mu, end / nu, height
     return end - start / mu * nu, start / mu, height
 
@@ -185,15 +185,15 @@ def fill_rows(place, matrix, tables, row_start, values):  # type: ignore[no-unty
     (curvature, degree); matrix: row starts, values and places in the rows of the result of the nonzeros of C;
     row_start: (points + 1,); values: (kinds, nonzeros), zero before.
     """
-    (order, face, columns), inverse, fan, cells, shape = place
+    (order, face, columns), inverse, fan, micro_count, shape = place
     start, data, slot = matrix
     kinds, count = len(values), tables.counts[0]
     work, powers = np.empty((3, count)), np.empty((3, shape[1] + 1))
     jet, lam = np.empty((kinds, count)), np.empty((3, 3))
     for n in range(len(order)):
-        cell = _coordinates(inverse, fan, face[n], columns, n, kinds, lam)
+        micro = _coordinates(inverse, fan, face[n], columns, n, kinds, lam)
         _jet(shape, tables, lam, kinds, work, powers, jet)
-        row = (face[n] * cells + cell) * count
+        row = (face[n] * micro_count + micro) * count
         for a in range(count):
             for k in range(start[row + a], start[row + a + 1]):
                 where = row_start[order[n]] + slot[k]
@@ -209,20 +209,20 @@ def _coordinates(inverse, fan, f, columns, n, kinds, lam):  # type: ignore[no-un
     """
     whole = fan.shape[1] > 0
     x0, x1, x2 = columns[n, 0, 0], columns[n, 1, 0], columns[n, 2, 0]
-    cell = 0 if whole else micro_cell(inverse, f, x0, x1, x2)
-    a, b, c = micro_heights(inverse, f, cell, x0, x1, x2)
+    micro = 0 if whole else micro_triangle(inverse, f, x0, x1, x2)
+    a, b, c = micro_heights(inverse, f, micro, x0, x1, x2)
     if whole:
-        cell, a, b, c = fan_cell(fan, f, a, b, c)
+        micro, a, b, c = fan_triangle(fan, f, a, b, c)
     lam[0, 0], lam[0, 1], lam[0, 2] = a, b, c
     if kinds > 1:
         for k in (1, 2):
             a, b, c = micro_heights(
-                inverse, f, 0 if whole else cell, columns[n, 0, k], columns[n, 1, k], columns[n, 2, k]
+                inverse, f, 0 if whole else micro, columns[n, 0, k], columns[n, 1, k], columns[n, 2, k]
             )
             if whole:
-                a, b, c = _fan_coordinates(fan, f, cell, a, b, c)
+                a, b, c = _fan_coordinates(fan, f, micro, a, b, c)
             lam[k, 0], lam[k, 1], lam[k, 2] = a, b, c
-    return cell
+    return micro
 
 
 @njit(cache=True)
@@ -233,13 +233,13 @@ def evaluate_nets(place, nets, tables, values):  # type: ignore[no-untyped-def]
     work, powers = np.empty((3, count)), np.empty((3, shape[1] + 1))
     jet, lam = np.empty((kinds, count)), np.empty((3, 3))
     for n in range(len(order)):
-        cell = _coordinates(inverse, fan, face[n], columns, n, kinds, lam)
+        micro = _coordinates(inverse, fan, face[n], columns, n, kinds, lam)
         _jet(shape, tables, lam, kinds, work, powers, jet)
         for kind in range(kinds):
             for q in range(width):
                 total = 0.0
                 for a in range(count):
-                    total += jet[kind, a] * nets[face[n], cell, a, q]
+                    total += jet[kind, a] * nets[face[n], micro, a, q]
                 values[kind, order[n], q] = total
 
 

@@ -27,7 +27,7 @@ class PiecewisePolynomials(Protocol):
 
     domain: GeodesicTriangulation
     degree: int
-    cells: Floats
+    micro_triangles: Floats
     matrix: csr_array
 
 
@@ -108,7 +108,7 @@ def _points(space: PiecewisePolynomials) -> int:
     geometry = space.domain.geometry
     if geometry.curvature == 0:
         return space.degree + 1
-    flat = space.cells.reshape(-1, 3, 3)
+    flat = space.micro_triangles.reshape(-1, 3, 3)
     corners = geometry.project(flat)
     diameter = float(geometry.distance(corners, np.roll(corners, -1, axis=1)).max())
     return space.degree + next(more for bound, more in _MORE_POINTS if diameter <= bound)
@@ -122,10 +122,13 @@ def _chunks(space: PiecewisePolynomials, points: int) -> Iterator[tuple[_Rule, _
         bernstein_gradients(space.degree, barycentric),
         bernstein_hessians(space.degree, barycentric),
     )
-    cells = space.cells.reshape(-1, 3, 3)
+    micro_triangles = space.micro_triangles.reshape(-1, 3, 3)
     at_once = max(_CHUNK // (len(weights) * coefficient_count(space.degree)), 1)
-    for begin in range(0, len(cells), at_once):
-        yield _rule(space.domain.geometry.curvature, cells[begin : begin + at_once], barycentric, weights), tables
+    for begin in range(0, len(micro_triangles), at_once):
+        yield (
+            _rule(space.domain.geometry.curvature, micro_triangles[begin : begin + at_once], barycentric, weights),
+            tables,
+        )
 
 
 def _rule(curvature: int, corners: Floats, barycentric: Floats, weights: Floats) -> _Rule:

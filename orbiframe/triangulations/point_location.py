@@ -17,10 +17,10 @@ from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulatio
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-_CELLS_PER_TRIANGLE = 2.0
-_LEAST_CELLS, _MOST_CELLS = 4, 512
+_SQUARES_PER_TRIANGLE = 2.0
+_LEAST_SQUARES_ASIDE, _MOST_SQUARES_ASIDE = 4, 512
 _MOST_STEPS = 1_000_000
-_MANY = 20_000  # from so many points on it pays to sort them by cells
+_MANY = 20_000  # from so many points on it pays to sort them by squares
 # A point this far beyond an edge, in barycentric coordinates, still counts as inside: no point goes back and forth.
 _ON_EDGE = 1e-12
 
@@ -55,7 +55,7 @@ class Locator:
         x = np.asarray(points.x, dtype=np.float64)
         patch, order = np.asarray(points.patch, dtype=np.intp), np.arange(len(x))
         if len(x) >= _MANY:
-            _order_by_cell(patch, x, self.grid.half_width, self.grid.face.shape, order)
+            _order_by_square(patch, x, self.grid.half_width, self.grid.face.shape, order)
             x, patch = x[order], patch[order]
         columns = np.array(self.domain.geometry.carry(x) if frames else x[:, :, None], order="C")
         face = np.empty(len(x), dtype=np.intp)
@@ -74,14 +74,14 @@ class Locator:
         """Where walks start."""
         atlas, geometry = self.domain.orbifold.atlas, self.domain.geometry
         share = self.domain.face_count / atlas.patch_count
-        cells = int(np.clip(np.sqrt(_CELLS_PER_TRIANGLE * share), _LEAST_CELLS, _MOST_CELLS))
+        squares = int(np.clip(np.sqrt(_SQUARES_PER_TRIANGLE * share), _LEAST_SQUARES_ASIDE, _MOST_SQUARES_ASIDE))
         face, isometry = self._seeds()
         far = geometry.from_polar(atlas.radius, 0.0)
         half_width = far[:, 1] / (1 + np.abs(far[:, 0])) if geometry.curvature <= 0 else np.ones(atlas.patch_count)
         sides = 2 if geometry.curvature > 0 else 1
         grid = Grid(
-            np.empty((atlas.patch_count, sides, cells, cells), dtype=np.intp),
-            np.empty((atlas.patch_count, sides, cells, cells, 3, 3)),
+            np.empty((atlas.patch_count, sides, squares, squares), dtype=np.intp),
+            np.empty((atlas.patch_count, sides, squares, squares, 3, 3)),
             half_width,
         )
         _fill_grid(geometry.curvature, face, isometry, self.steps, grid.face, grid.isometry, half_width)
@@ -107,7 +107,8 @@ class Locator:
 class Grid(NamedTuple):
     """Starts of walks: triangles (P, sides, n, n) and isometries (P, sides, n, n, 3, 3) from patch to triangle.
 
-    The cells divide the square of the given half width (P,) in the chart (x1, x2) / (1 + |x0|); sides: x0 > 0 and < 0.
+    The squares divide the square of the given half width (P,) in the chart (x1, x2) / (1 + |x0|); sides: x0 > 0 and <
+    0.
     """
 
     face: Ints
@@ -158,11 +159,11 @@ def _walk_one(face, columns, inverse, twin, across):  # type: ignore[no-untyped-
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def cell_of(x0, x1, x2, half_width, cells):  # type: ignore[no-untyped-def]
-    """The cell of the grid, of `cells` times `cells`, in which a point of a patch lies, or the nearest one."""
-    scale = cells / (2 * half_width * (1 + abs(x0)))
-    i = min(max(int(x1 * scale + cells / 2), 0), cells - 1)
-    j = min(max(int(x2 * scale + cells / 2), 0), cells - 1)
+def square_of(x0, x1, x2, half_width, squares):  # type: ignore[no-untyped-def]
+    """The square of the grid, of `squares` times `squares`, in which a point of a patch lies, or the nearest one."""
+    scale = squares / (2 * half_width * (1 + abs(x0)))
+    i = min(max(int(x1 * scale + squares / 2), 0), squares - 1)
+    j = min(max(int(x2 * scale + squares / 2), 0), squares - 1)
     return i, j
 
 
@@ -194,18 +195,18 @@ def walk(face, x0, x1, x2, inverse, twin, across):  # type: ignore[no-untyped-de
 
 
 @njit(cache=True)
-def _order_by_cell(patch, x, half_width, shape, order):  # type: ignore[no-untyped-def]
-    """Sort the numbers of the points by the cells of the grid, counting."""
-    sides, cells = shape[1], shape[2]
+def _order_by_square(patch, x, half_width, shape, order):  # type: ignore[no-untyped-def]
+    """Sort the numbers of the points by the squares of the grid, counting."""
+    sides, squares = shape[1], shape[2]
     key = np.empty(len(patch), dtype=np.int32)
-    start = np.zeros(shape[0] * sides * cells * cells + 1, dtype=np.int64)
+    start = np.zeros(shape[0] * sides * squares * squares + 1, dtype=np.int64)
     for n in range(len(patch)):
         x0, x1, x2 = x[n, 0], x[n, 1], x[n, 2]
         i, j = 0, 0
         if np.isfinite(x0) and np.isfinite(x1) and np.isfinite(x2):
-            i, j = cell_of(x0, x1, x2, half_width[patch[n]], cells)
+            i, j = square_of(x0, x1, x2, half_width[patch[n]], squares)
         side = 1 if sides > 1 and x0 < 0 else 0
-        key[n] = ((patch[n] * sides + side) * cells + i) * cells + j
+        key[n] = ((patch[n] * sides + side) * squares + i) * squares + j
         start[key[n] + 1] += 1
     for k in range(1, len(start)):
         start[k] += start[k - 1]
@@ -219,12 +220,12 @@ def _walk_all(patch, face, moved, steps, grid):  # type: ignore[no-untyped-def]
     """Locate every point; returns the first that has no triangle, or -1."""
     grid_face, grid_isometry, half_width = grid
     inverse, twin, across = steps
-    cells, width = grid_face.shape[2], moved.shape[2]
+    squares, width = grid_face.shape[2], moved.shape[2]
     for n in range(len(patch)):
         p, columns = patch[n], moved[n]
         if not (np.isfinite(columns[0, 0]) and np.isfinite(columns[1, 0]) and np.isfinite(columns[2, 0])):
             return n
-        i, j = cell_of(columns[0, 0], columns[1, 0], columns[2, 0], half_width[p], cells)
+        i, j = square_of(columns[0, 0], columns[1, 0], columns[2, 0], half_width[p], squares)
         side = 1 if grid_face.shape[1] > 1 and columns[0, 0] < 0 else 0
         g = grid_isometry[p, side, i, j]
         for k in range(width):
@@ -238,10 +239,10 @@ def _walk_all(patch, face, moved, steps, grid):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _centre(curvature, i, j, cells, half_width):  # type: ignore[no-untyped-def]
-    """The middle of a cell as a point of X; in H^2 and E^2 not beyond the patch, in S^2 on the side x0 > 0."""
-    u = ((2 * i + 1) / cells - 1) * half_width
-    v = ((2 * j + 1) / cells - 1) * half_width
+def _centre(curvature, i, j, squares, half_width):  # type: ignore[no-untyped-def]
+    """The middle of a square as a point of X; in H^2 and E^2 not beyond the patch, in S^2 on the side x0 > 0."""
+    u = ((2 * i + 1) / squares - 1) * half_width
+    v = ((2 * j + 1) / squares - 1) * half_width
     radius = np.sqrt(u * u + v * v)
     if radius > half_width:
         u, v, radius = u * half_width / radius, v * half_width / radius, half_width
@@ -253,17 +254,17 @@ def _centre(curvature, i, j, cells, half_width):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _fill_grid(curvature, seed, isometry, steps, grid_face, grid_isometry, half_width):  # type: ignore[no-untyped-def]
-    """The triangle at the centre of every cell: every row starts from the row before, so that no walk is long."""
+    """The triangle at the centre of every square: every row starts from the row before, so that no walk is long."""
     inverse, twin, across = steps
-    cells = grid_face.shape[2]
+    squares = grid_face.shape[2]
     columns = np.empty((3, 4))
     for p in range(len(seed)):
         for side in range(grid_face.shape[1]):
             row_face, row_isometry = seed[p], isometry[p].copy()
-            for i in range(cells):
+            for i in range(squares):
                 face, g = row_face, row_isometry.copy()
-                for j in range(cells):
-                    x0, x1, x2 = _centre(curvature, i, j, cells, half_width[p])
+                for j in range(squares):
+                    x0, x1, x2 = _centre(curvature, i, j, squares, half_width[p])
                     x0 = -x0 if side else x0
                     for row in range(3):
                         columns[row, 0] = g[row, 0] * x0 + g[row, 1] * x1 + g[row, 2] * x2

@@ -33,12 +33,12 @@ def spread(triangulation: Triangulation, size: int) -> Spacing:
 
 
 def supports(triangulation: Triangulation, spacing: Spacing, per_area: float) -> Floats:
-    """The versine at which each function ends: smoothed cell areas, and never less than what covers the surface."""
+    """The versine at which each function ends: from smoothed areas of regions, at least what covers the surface."""
     mesh = triangulation.polyhedron
     areas = np.bincount(mesh.tail, weights=np.repeat(np.abs(triangulation.areas) / 3, 3), minlength=len(spacing.owner))
-    cells = np.bincount(spacing.owner, weights=areas, minlength=len(spacing.chosen))
+    regions = np.bincount(spacing.owner, weights=areas, minlength=len(spacing.chosen))
     least = _covering(triangulation, spacing)
-    support = np.maximum(per_area * cells, least)
+    support = np.maximum(per_area * regions, least)
     for _ in range(2):
         support = _smoothed(support, spacing.owner[mesh.tail], spacing.owner[mesh.head])
     return np.asarray(np.maximum(support, least))

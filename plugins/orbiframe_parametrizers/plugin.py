@@ -19,7 +19,7 @@ def orbiframe_components() -> list[Component]:
             "parametrizer",
             "equivariant",
             "orbiframe_parametrizers.equivariant:equivariant",
-            "chi <= 0: harmonic map to a named group, from the centre of its cell",
+            "chi <= 0: harmonic map to a named group, from the centre of its polygon",
         ),
         Component(
             "parametrizer",

@@ -185,9 +185,9 @@ def check_split(domain: GeodesicTriangulation) -> None:
     np.testing.assert_allclose(np.linalg.det(np.stack([r, z, beyond], axis=1)), 0, atol=1e-11)
     there = geometry.act(domain.gluing, r[domain.twin])
     np.testing.assert_allclose(np.cross(there, r), 0, atol=1e-10)
-    area = np.abs(np.linalg.det(split.cells)).sum(axis=1)
+    area = np.abs(np.linalg.det(split.micro_triangles)).sum(axis=1)
     np.testing.assert_allclose(area, np.abs(np.linalg.det(domain.corners)), rtol=1e-11)
-    assert (np.linalg.det(split.cells) * np.tile([1, -1], 3) > 0).all()
+    assert (np.linalg.det(split.micro_triangles) * np.tile([1, -1], 3) > 0).all()
 
 
 @each_domain

@@ -22,7 +22,7 @@ from reference_geometries import GEOMETRIES
 
 from orbiframe import FormatError, GeometryError, PluginError, Registry, UsageError, Word
 from orbiframe.groups import orbifold_group
-from orbiframe.words import Signature
+from orbiframe.words import ConwaySymbol
 
 S2, E2, H2 = GEOMETRIES
 GEOMETRY = {1: S2, 0: E2, -1: H2}
@@ -240,7 +240,7 @@ def test_a_motif_shows_which_elements_reverse_orientation():
 
 
 def test_mirrors_have_no_arrows():
-    signature = Signature.parse("*237")
+    signature = ConwaySymbol.parse("*237")
     picture = group_picture(orbifold_group(H2, signature), tiles=30)
     assert not [s for s in picture.shapes if s.fill in (line_colour(1), line_colour(2), line_colour(3))]
     assert [label.text for label in picture.labels] == ["a", "b", "c"]
@@ -290,7 +290,7 @@ ORDERS = {"*": 2, "x": 2, "22": 2, "*33": 6, "3x": 6, "2*": 4, "222": 4, "*222":
 
 @pytest.mark.parametrize("text", ORDERS)
 def test_cells_of_spherical_groups_have_the_area_of_the_sphere_over_the_order(text):
-    group = orbifold_group(S2, Signature.parse(text))
+    group = orbifold_group(S2, ConwaySymbol.parse(text))
     cell = cell_of(group)
     fan = S2.triangle_area(S2.origin, cell.corners, np.roll(cell.corners, -1, axis=0))
     assert fan.sum() == pytest.approx(4 * np.pi / ORDERS[text], rel=1e-9)

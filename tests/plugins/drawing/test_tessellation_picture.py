@@ -13,7 +13,7 @@ from orbiframe_drawing.tessellation import Tessellation
 from orbiframe_drawing.tessellation_picture import tessellation_picture
 
 from orbiframe import Config, Polyhedron, Registry, Word, fit, read
-from orbiframe.delaunay import cell_triangulation, poisson_disc
+from orbiframe.delaunay import poisson_disc, polygon_triangulation
 from orbiframe.words.word import text_of
 
 DATASETS = Path(__file__).parents[3] / "datasets"
@@ -86,7 +86,7 @@ def test_tessellations_of_other_surfaces_have_one_lift_of_every_face(name):
 def test_triangles_of_sites_are_drawn_with_their_vertices():
     word = Word.parse("aabbcc")
     group = REGISTRY.load("group", "regular-polygon")(REGISTRY.load("geometry", "h2")(), word)
-    triangulation = poisson_disc(cell_triangulation(group), 0.5)
+    triangulation = poisson_disc(polygon_triangulation(group), 0.5)
     found = Tessellation.of_triangulation(triangulation)
     home = np.concatenate([c.corners[c.home] for c in found.copies(3.5)])
     assert len(home) == triangulation.face_count

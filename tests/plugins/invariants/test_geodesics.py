@@ -15,7 +15,7 @@ from reference_geometries import GEOMETRIES
 
 from orbiframe import GeometryError, Points, Word
 from orbiframe.groups import PolygonGroup, regular_polygon
-from orbiframe.planes import Spin
+from orbiframe.planes import PreciseIsometry
 from orbiframe.testing.reference import reference_triangulations
 
 S2, E2, H2 = GEOMETRIES
@@ -204,4 +204,4 @@ def test_the_identity_has_no_closed_geodesic() -> None:
     with pytest.raises(GeometryError, match="fixed point"):
         of("Bolza").closed(np.eye(3))
     with pytest.raises(GeometryError, match="fixed point"):
-        of("Bolza").closed(Spin.rotation(-1, [1.0]))
+        of("Bolza").closed(PreciseIsometry.rotation(-1, [1.0]))
