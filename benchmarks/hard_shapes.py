@@ -25,6 +25,7 @@ from orbiframe.errors import OrbiframeError
 from orbiframe.fitting import pipeline
 from orbiframe.meshes.bisection import bisected, edge_length_for
 from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe.meshes.flat_flips import flat_flips
 from orbiframe.meshes.subdivision import refine
 from orbiframe.meshes.surface_type import surface_type
 from orbiframe.triangulations.lost_digits import crowding_of
@@ -86,7 +87,8 @@ def _quartered_fan(word: str) -> Polyhedron:
 
 def refined(mesh: Polyhedron) -> Polyhedron:
     """The mesh refined as for a fit by few functions."""
-    return bisected(mesh, edge_length_for(mesh, 3000), True).polyhedron
+    flips = flat_flips(mesh)
+    return bisected(mesh, edge_length_for(flips.after, 3000), True, flips).polyhedron
 
 
 def mapped(mesh: Polyhedron) -> Triangulation:

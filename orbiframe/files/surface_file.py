@@ -19,6 +19,7 @@ from orbiframe.errors import FormatError
 from orbiframe.files.gate import Components
 from orbiframe.files.places import require_readable
 from orbiframe.meshes.bisection import Bisection
+from orbiframe.meshes.flat_flips import FlatFlips
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.orbifolds.atlas import Atlas
 from orbiframe.orbifolds.orbifold import Orbifold
@@ -27,7 +28,7 @@ from orbiframe.triangulations.triangulation import Triangulation
 
 Arrays = Mapping[str, NDArray[Any]]
 
-_KIND, _VERSION = "orbiframe surface", 1
+_KIND, _VERSION = "orbiframe surface", 2  # version 1 knows no flips
 # What numpy, zipfile and json raise where bytes are not those that were written; zipfile raises RuntimeError too.
 _DAMAGE = (ValueError, LookupError, TypeError, OSError, EOFError, RuntimeError, zipfile.BadZipFile, zlib.error)
 _MESH = ("vertices", "offsets", "tail", "twin", "same")
@@ -62,13 +63,18 @@ def load_surface(path: Path, registry: Components) -> OrbifoldSurface:
     require_readable(path)
     try:
         with np.load(path, allow_pickle=False) as archive:
+            if damaged := archive.zip.testzip():
+                raise ValueError(f"{damaged} is damaged")
             arrays = {name: archive[name] for name in archive.files}
         about = json.loads(str(arrays["about"]))
-        if (about["kind"], about["version"]) != (_KIND, _VERSION):
-            raise FormatError(f"{path}: version {about['version']} of '{about['kind']}' is not known; version 1 is")
+        if about["kind"] != _KIND or about["version"] not in range(1, _VERSION + 1):
+            raise FormatError(
+                f"{path}: version {about['version']} of '{about['kind']}' is not known; 1 to {_VERSION} are"
+            )
         triangulation = _triangulation(arrays, about, registry)
         coarse = _polyhedron(arrays, "coarse")
-        refinement = Bisection(coarse, triangulation.polyhedron, arrays["side"], arrays["child"])
+        flips = _flips(arrays, coarse)
+        refinement = Bisection(coarse, triangulation.polyhedron, arrays["side"], arrays["child"], flips)
         coefficients, origin, scale = arrays["coefficients"], arrays["origin"], float(arrays["scale"])
         name, options = about["basis"], dict(about["options"])
     except _DAMAGE as error:
@@ -100,7 +106,9 @@ def _arrays(surface: OrbifoldSurface) -> dict[str, Any]:
         "basis": surface.basis_name,
         "options": dict(surface.basis_options),
     }
+    flips = surface.refinement.flips
     return {
+        **({} if flips is None else {"flip_halfedge": flips.halfedge, "flip_crossing": flips.crossing}),
         "about": np.array(json.dumps(about, sort_keys=True)),
         **{f"coarse_{name}": getattr(surface.refinement.coarse, name) for name in _MESH},
         **{f"fine_{name}": getattr(triangulation.polyhedron, name) for name in _MESH},
@@ -130,6 +138,16 @@ def _triangulation(arrays: Arrays, about: Mapping[str, Any], registry: Component
         about["group"],
         about["weights"],
     )
+
+
+def _flips(arrays: Arrays, coarse: Polyhedron) -> FlatFlips | None:
+    if "flip_halfedge" not in arrays:
+        return None
+    halfedge, crossing = arrays["flip_halfedge"], arrays["flip_crossing"]
+    known = halfedge.size == 0 or 0 <= halfedge.min() <= halfedge.max() < len(coarse.tail)
+    if not (known and halfedge.shape == crossing.shape == (len(halfedge), 2)):
+        raise ValueError("flips of edges that the mesh does not have")
+    return FlatFlips(coarse, halfedge.astype(np.intp), crossing.astype(np.float64))
 
 
 def _polyhedron(arrays: Arrays, prefix: str) -> Polyhedron:

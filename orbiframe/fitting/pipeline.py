@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,6 +24,7 @@ from orbiframe.groups.marked_group import MarkedGroup
 from orbiframe.meshes.bisection import Bisection, bisected, edge_length_for
 from orbiframe.meshes.defects import require_closed_surface
 from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe.meshes.flat_flips import FlatFlips, flat_flips
 from orbiframe.meshes.orientation import oriented
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.regular_triangles import regular_triangles
@@ -168,12 +170,19 @@ class _Approximation:
 
     def _map(self, size: int) -> _Mapped:
         """The mesh refined so that samples and centres are dense enough for the basis, and its map to X/H."""
-        longest = edge_length_for(self.triangles, max(_LEAST_VERTICES, _VERTICES_PER_FUNCTION * size))
+        flips = self._flips
+        shapes = self.triangles if flips is None else flips.after
+        longest = edge_length_for(shapes, max(_LEAST_VERTICES, _VERTICES_PER_FUNCTION * size))
         if longest not in self.maps:
-            refinement = self.stages("refinement", bisected, self.triangles, longest, True)
+            refinement = self.stages("refinement", bisected, self.triangles, longest, True, flips)
             first = _mapped(refinement.polyhedron, self.surface_type, self.config, self.registry, self.stages)
             self.maps[longest] = _Mapped(refinement, first, self._shaped(refinement, first))
         return self.maps[longest]
+
+    @cached_property
+    def _flips(self) -> FlatFlips | None:
+        """Needles in plane parts of the polyhedron, gone; an optimizer of its faces needs their own triangles."""
+        return flat_flips(self.triangles) if self.config.shape.open else None
 
     def _shaped(self, refinement: Bisection, first: Triangulation) -> Triangulation:
         """The map changed so that the faces of the polyhedron become regular, where an optimizer is named."""

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.errors import TopologyError
+from orbiframe.meshes.flat_flips import FlatFlips
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
 from orbiframe.meshes.surface_type import doubled_edges
@@ -23,16 +24,20 @@ class Bisection:
 
     coarse, polyhedron: the mesh before and after; its first vertices are the coarse ones. side: (N,), the side across
     which node n of the forest is halved, -1 at a leaf; child: (N,), the first half, the second one follows it, or at
-    a leaf the triangle of the refined mesh. The first nodes are the coarse triangles.
+    a leaf the triangle of the refined mesh. flips: of edges of the coarse mesh, before any is halved; None for no
+    flip. The first nodes are the triangles after the flips.
     """
 
     coarse: Polyhedron
     polyhedron: Polyhedron
     side: Ints
     child: Ints
+    flips: FlatFlips | None = None
 
     def locate(self, face: Ints, barycentric: Floats) -> tuple[Ints, Floats]:
         """The fine triangle (n,) and the barycentric coordinates in it (n, 3) of points of coarse triangles."""
+        if self.flips is not None:
+            face, barycentric = self.flips.locate(face, barycentric)
         node = np.array(face, dtype=np.intp)
         weights = np.array(barycentric, dtype=np.float64)
         active = np.flatnonzero(self.side[node] >= 0)
@@ -63,10 +68,16 @@ class Bisection:
             node[parents, side] = first[:, 0] @ second[:, 0]
             node[parents, (side + 1) % 3] = second[:, 1]
             node[parents, (side + 2) % 3] = first[:, 2]
-        return node[: self.coarse.face_count].reshape(-1, *steps.shape[1:])
+        products = node[: self.coarse.face_count].reshape(-1, *steps.shape[1:])
+        return products if self.flips is None else self.flips.carried_back(products)
 
     def spread(self, corners: Floats) -> Floats:
-        """Values at the corners of the coarse triangles, (F, 3, k), linearly at the corners of the fine ones."""
+        """Values at the corners of the coarse triangles, (F, 3, k), linearly at the corners of the fine ones.
+
+        Raises TopologyError where edges were flipped: linear on each coarse triangle is not linear on a fine one then.
+        """
+        if self.flips is not None and len(self.flips.halfedge):
+            raise TopologyError("values at corners of triangles do not survive flips of edges; refine without flips")
         node = np.zeros((len(self.side), 3, corners.shape[2]))
         node[: len(corners)] = corners
         for parents in self._levels():
@@ -91,8 +102,12 @@ class Bisection:
         return levels
 
 
-def bisected(polyhedron: Polyhedron, longest: float, simplicial: bool = False) -> Bisection:
+def bisected(
+    polyhedron: Polyhedron, longest: float, simplicial: bool = False, flips: FlatFlips | None = None
+) -> Bisection:
     """The triangle mesh with edges halved until none is longer than `longest`; flat, watertight, same surface.
+
+    flips: of edges of the mesh, done before any is halved.
 
     simplicial: loops are halved too, and edges that share both ends with another one, until none is left; a map to X/H
     that is linear on each triangle needs that (see `doubled_edges`).
@@ -107,10 +122,10 @@ def bisected(polyhedron: Polyhedron, longest: float, simplicial: bool = False) -
         raise TopologyError(f"edges no longer than {longest} were asked for; the length must be positive")
     if (polyhedron.twin < 0).any():
         raise TopologyError("only a closed mesh is refined; `orbiframe info` lists its open edges")
-    state = _State(polyhedron, simplicial)
+    state = _State(polyhedron if flips is None else flips.after, simplicial)
     while len(edges := state.edges_to_halve(longest)):
         state.halve(edges)
-    return state.result(polyhedron)
+    return Bisection(polyhedron, state.mesh(), state.side, state.child, flips)
 
 
 def edge_length_for(polyhedron: Polyhedron, vertices: int) -> float:
@@ -180,7 +195,7 @@ class _State:
         """The halfedges that must go from a simplicial complex; once it is one, halving keeps it so."""
         if not self.made_simplicial:
             return np.zeros(len(self.twin), dtype=np.bool_)
-        doubled = doubled_edges(self._mesh())
+        doubled = doubled_edges(self.mesh())
         self.made_simplicial = bool(doubled.any()) or len(self.triangles) == 2
         return doubled
 
@@ -237,9 +252,6 @@ class _State:
             same[mine] = same[theirs] = parallel
         self.twin, self.same = twin, same
 
-    def _mesh(self) -> Polyhedron:
+    def mesh(self) -> Polyhedron:
         offsets = np.arange(len(self.triangles) + 1) * 3
         return Polyhedron(self.vertices, offsets, self.triangles.ravel(), self.twin, self.same)
-
-    def result(self, coarse: Polyhedron) -> Bisection:
-        return Bisection(coarse, self._mesh(), self.side, self.child)
