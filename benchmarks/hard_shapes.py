@@ -43,10 +43,10 @@ def shapes() -> Iterator[tuple[str, Callable[[], Polyhedron]]]:
     for count in range(1, 21):
         yield f"{count} crosscaps, random vertices", lambda count=count: hard.crosscaps(count, 3)
     two = hard.plate_cells(1, 2)
-    for ratio in (5, 10, 20, 30, 35, 40):
+    for ratio in (5, 10, 20, 30, 35, 40, 60, 80):
         yield f"genus 2, finger of length {ratio} radii", lambda r=ratio: hard.with_finger(two, (0, 0, 0), r)
     one = hard.plate_cells(1, 1)
-    for ratio in (10, 30, 40):
+    for ratio in (10, 20, 30, 40, 60, 80):
         yield f"torus, finger of length {ratio} radii", lambda r=ratio: hard.with_finger(one, (0, 0, 0), r)
         yield f"sphere, finger of length {ratio} radii", lambda r=ratio: hard.with_finger(_slab(), (0, 0, 0), r)
     for kind, make in _bases().items():
