@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from orbiframe.compiled.decorator import compiled
+from orbiframe.compiled.matrices import copy, multiply
 from orbiframe.delaunay.lawson_flips import chord, legalise_star, push, versine
-from orbiframe.delaunay.point_walk import LONGEST_CHAIN, Located, by_place, walk
-from orbiframe.delaunay.triangle_arrays import TriangleArrays, bare, copy, corner, move, multiply, recentre, split
+from orbiframe.delaunay.point_walk import LONGEST_CHAIN, Located, by_place, follow
+from orbiframe.delaunay.triangle_arrays import TriangleArrays, corner, move, recentre, split
 from orbiframe.errors import MapError
 
 Ints = NDArray[np.intp]
@@ -42,9 +43,9 @@ def _rounds(sites: Located) -> Ints:
     return order[np.argsort(level[order], kind="stable")]
 
 
-@njit(cache=True)
+@compiled
 def _insert(triangles, faces, vertices, order, home, x, near, vertex):  # type: ignore[no-untyped-def]
-    route, y = np.eye(3), np.empty(3)
+    route, y = np.empty((3, 3)), np.empty(3)
     k, face, seed, last, chain = triangles.curvature, 0, 1, -1, 0
     for i in order:
         if home[i] != last or chain >= LONGEST_CHAIN:
@@ -53,7 +54,7 @@ def _insert(triangles, faces, vertices, order, home, x, near, vertex):  # type: 
             copy(triangles.route[last], route)
         chain += 1
         y[0], y[1], y[2] = move(k, route, x[i])
-        face, seed = walk(triangles, face, y, route, seed)
+        face, seed = follow(triangles, face, y, route, seed)
         if face < 0:
             return vertices, i
         if recentre(triangles, face):
@@ -76,7 +77,7 @@ def _insert(triangles, faces, vertices, order, home, x, near, vertex):  # type: 
     return vertices, -1
 
 
-@bare
+@compiled(arrays=False)
 def _holds(triangles, face, x):  # type: ignore[no-untyped-def]
     """Whether x is a corner of a triangle to the bit: its frame is then still the same."""
     return (

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from orbiframe.compiled.decorator import compiled
+from orbiframe.compiled.matrices import copy, multiply
 from orbiframe.delaunay.lawson_flips import turn
-from orbiframe.delaunay.triangle_arrays import TriangleArrays, arrays_of, bare, copy, corner, move, multiply
+from orbiframe.delaunay.triangle_arrays import TriangleArrays, arrays_of, corner, move
 from orbiframe.errors import GeometryError
 from orbiframe.meshes.edge_paths import curve_order
 from orbiframe.orbifolds.atlas import Points
@@ -29,15 +30,15 @@ class Located(NamedTuple):
     x: Floats
 
 
-def locate(triangulation: GeodesicTriangulation, points: Points) -> Located:
+def find(triangulation: GeodesicTriangulation, points: Points) -> Located:
     """The triangles in which points of X/H lie; a point on an edge or vertex lies in any of its triangles.
 
     Raises GeometryError for a point that is not finite or too far from its patch to be followed.
     """
-    return locate_in(arrays_of(triangulation), triangulation, points)
+    return find_in(arrays_of(triangulation), triangulation, points)
 
 
-def locate_in(triangles: TriangleArrays, triangulation: GeodesicTriangulation, points: Points) -> Located:
+def find_in(triangles: TriangleArrays, triangulation: GeodesicTriangulation, points: Points) -> Located:
     """The same for triangles that come from a triangulation and may have been flipped since."""
     face, route = _entrances(triangles, triangulation)
     x = np.ascontiguousarray(points.x, dtype=np.float64)
@@ -77,8 +78,8 @@ def _entrances(triangles: TriangleArrays, triangulation: GeodesicTriangulation) 
     return face, route
 
 
-@bare
-def walk(triangles, face, x, route, seed):  # type: ignore[no-untyped-def]
+@compiled(arrays=False)
+def follow(triangles, face, x, route, seed):  # type: ignore[no-untyped-def]
     """Follow a point x from a triangle to the one that it lies in; x and route change with the frames.
 
     Crosses any edge that the point lies beyond, but never straight back: on a Delaunay triangulation that ends, on any
@@ -107,10 +108,10 @@ def walk(triangles, face, x, route, seed):  # type: ignore[no-untyped-def]
     return -1, seed
 
 
-@njit(cache=True)
+@compiled
 def _locate(triangles, order, patch, x, first, first_route, found_face, found_x):  # type: ignore[no-untyped-def]
     """Fill in the triangles and coordinates of points; returns -1, or the first point that was not found."""
-    route, y = np.eye(3), np.empty(3)
+    route, y = np.empty((3, 3)), np.empty(3)
     face, seed, last, chain = 0, 1, -1, 0
     for i in order:
         if patch[i] != last or chain >= LONGEST_CHAIN:
@@ -119,9 +120,9 @@ def _locate(triangles, order, patch, x, first, first_route, found_face, found_x)
             copy(first_route[last], route)
         chain += 1
         y[0], y[1], y[2] = move(triangles.curvature, route, x[i])
-        face, seed = walk(triangles, face, y, route, seed)
+        face, seed = follow(triangles, face, y, route, seed)
         if face < 0:
             return i
         found_face[i] = face
-        found_x[i] = y
+        found_x[i, 0], found_x[i, 1], found_x[i, 2] = y[0], y[1], y[2]
     return -1

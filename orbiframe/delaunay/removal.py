@@ -3,22 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from orbiframe.compiled.decorator import compiled
+from orbiframe.compiled.matrices import copy, multiply, set_identity
 from orbiframe.delaunay.lawson_flips import legalise, outside, push, push_around, turn
-from orbiframe.delaunay.triangle_arrays import (
-    TriangleArrays,
-    after,
-    bare,
-    before,
-    copy,
-    corner,
-    flip,
-    merge,
-    move,
-    multiply,
-)
+from orbiframe.delaunay.triangle_arrays import TriangleArrays, after, before, corner, flip, merge, move
 from orbiframe.errors import MapError
 
 Ints = NDArray[np.intp]
@@ -38,7 +28,7 @@ def remove(triangles: TriangleArrays, vertices: ArrayLike) -> None:
         )
 
 
-@njit(cache=True)
+@compiled
 def _remove(triangles, order):  # type: ignore[no-untyped-def]
     """Remove vertices; returns -1, or the first that could not be removed."""
     ring = (np.empty(64, dtype=np.intp), np.empty((64, 3)), np.empty(64, dtype=np.bool_))
@@ -61,7 +51,7 @@ def _remove(triangles, order):  # type: ignore[no-untyped-def]
     return -1
 
 
-@njit(cache=True)
+@compiled
 def _link(triangles, vertex, ring):  # type: ignore[no-untyped-def]
     """Walk counterclockwise round a vertex, in the frame of the triangle at its seat.
 
@@ -70,12 +60,12 @@ def _link(triangles, vertex, ring):  # type: ignore[no-untyped-def]
     the other way.
     """
     edge, x, loop = ring
-    route, moved = np.eye(3), np.empty((3, 3))
+    route, moved = np.empty((3, 3)), np.empty((3, 3))
+    set_identity(route)
     slot, mirrored, degree = triangles.seat[vertex], False, 0
     while degree == 0 or slot != triangles.seat[vertex]:
         if degree == len(edge):
-            edge, loop = np.concatenate((edge, edge)), np.concatenate((loop, loop))
-            x = np.concatenate((x, x))
+            edge, x, loop = _longer(edge, x, loop)
         end = before(slot) if mirrored else after(slot)
         edge[degree] = end if mirrored else slot
         x[degree, 0], x[degree, 1], x[degree, 2] = move(triangles.curvature, route, corner(triangles, end))
@@ -90,7 +80,18 @@ def _link(triangles, vertex, ring):  # type: ignore[no-untyped-def]
     return degree, (edge, x, loop)
 
 
-@bare
+@compiled
+def _longer(edge, x, loop):  # type: ignore[no-untyped-def]
+    """The same ring with room for twice as many edges."""
+    size = len(edge)
+    longer = (np.empty(2 * size, dtype=np.intp), np.empty((2 * size, 3)), np.empty(2 * size, dtype=np.bool_))
+    for i in range(size):
+        longer[0][i], longer[2][i] = edge[i], loop[i]
+        longer[1][i, 0], longer[1][i, 1], longer[1][i, 2] = x[i, 0], x[i, 1], x[i, 2]
+    return longer
+
+
+@compiled(arrays=False)
 def _soonest(curvature, v, degree, ring):  # type: ignore[no-untyped-def]
     """The edge at a vertex v that flips first if v, with all its lifts, is raised over the surface of the lifted sites.
 

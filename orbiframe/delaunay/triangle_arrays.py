@@ -1,6 +1,6 @@
 """TriangleArrays: the triangles of X/H as arrays that change in place, and the surgery on them: flip, split, merge.
 
-Compiled by numba. Every operation works on the gluings alone, so it holds in the three geometries, for triangles that
+Compiled. Every operation works on the gluings alone, so it holds in the three geometries, for triangles that
 share several edges or are glued to themselves, and for gluings that reverse orientation.
 """
 
@@ -9,9 +9,10 @@ from __future__ import annotations
 from typing import NamedTuple, TypeVar
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from orbiframe.compiled.decorator import compiled
+from orbiframe.compiled.matrices import copy, is_identity, multiply, set_identity
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
@@ -23,11 +24,6 @@ Number = TypeVar("Number", bound=np.generic)
 # patch while cosh of the distance of its frame is.
 _NEAR = 0.36
 _NEAR_PATCH = 1.5
-
-
-# For functions that make no array: they need not count who refers to the arrays they are given, which takes longer than
-# what they do with them.
-bare = njit(cache=True, _nrt=False)  # type: ignore[call-overload]
 
 
 class TriangleArrays(NamedTuple):
@@ -85,15 +81,7 @@ def _longer(values: NDArray[Number], size: int, fill: int = 0) -> NDArray[Number
 # ---- matrices -------------------------------------------------------------------------------------------------------
 
 
-@bare
-def multiply(a, b, out):  # type: ignore[no-untyped-def]
-    """out = a b; out is another array than a and b."""
-    for i in range(3):
-        for j in range(3):
-            out[i, j] = a[i, 0] * b[0, j] + a[i, 1] * b[1, j] + a[i, 2] * b[2, j]
-
-
-@bare
+@compiled(arrays=False)
 def invert(curvature, g, out):  # type: ignore[no-untyped-def]
     """out = the inverse of the isometry g; out is another array than g."""
     for i in range(3):
@@ -108,7 +96,7 @@ def invert(curvature, g, out):  # type: ignore[no-untyped-def]
             out[i, 0] = -(g[1, i] * g[1, 0] + g[2, i] * g[2, 0])
 
 
-@bare
+@compiled(arrays=False)
 def move(curvature, g, x):  # type: ignore[no-untyped-def]
     """g x for a point x of X, put back on X, as three numbers."""
     a = g[0, 0] * x[0] + g[0, 1] * x[1] + g[0, 2] * x[2]
@@ -120,32 +108,7 @@ def move(curvature, g, x):  # type: ignore[no-untyped-def]
     return (np.sqrt(1 + b * b + c * c) if curvature < 0 else 1.0), b, c
 
 
-@bare
-def copy(a, out):  # type: ignore[no-untyped-def]
-    """out = a, entry by entry: quicker than an assignment of slices."""
-    for i in range(3):
-        for j in range(3):
-            out[i, j] = a[i, j]
-
-
-@bare
-def _set_identity(g):  # type: ignore[no-untyped-def]
-    for i in range(3):
-        for j in range(3):
-            g[i, j] = 1.0 if i == j else 0.0
-
-
-@bare
-def is_identity(g):  # type: ignore[no-untyped-def]
-    """Whether g is the identity, to the bit."""
-    for i in range(3):
-        for j in range(3):
-            if g[i, j] != (1.0 if i == j else 0.0):
-                return False
-    return True
-
-
-@bare
+@compiled(arrays=False)
 def carry(curvature, p, out):  # type: ignore[no-untyped-def]
     """out = the isometry that takes the origin to a point p of X along the geodesic; on S^2 p0 > -1."""
     share = curvature / (1 + p[0])
@@ -157,13 +120,13 @@ def carry(curvature, p, out):  # type: ignore[no-untyped-def]
 # ---- going round ----------------------------------------------------------------------------------------------------
 
 
-@bare
+@compiled(arrays=False)
 def after(e):  # type: ignore[no-untyped-def]
     """The next halfedge round the triangle."""
     return e - 2 if e % 3 == 2 else e + 1
 
 
-@bare
+@compiled(arrays=False)
 def before(e):  # type: ignore[no-untyped-def]
     """The previous halfedge round the triangle."""
     return e + 2 if e % 3 == 0 else e - 1
@@ -172,7 +135,7 @@ def before(e):  # type: ignore[no-untyped-def]
 # ---- surgery --------------------------------------------------------------------------------------------------------
 
 
-@bare
+@compiled(arrays=False)
 def place(triangles, slot, vertex, x):  # type: ignore[no-untyped-def]
     """Put a vertex at the point x into a corner."""
     face, c = slot // 3, slot % 3
@@ -181,14 +144,14 @@ def place(triangles, slot, vertex, x):  # type: ignore[no-untyped-def]
     triangles.seat[vertex] = slot
 
 
-@bare
+@compiled(arrays=False)
 def corner(triangles, slot):  # type: ignore[no-untyped-def]
     """The point at a corner, as three numbers."""
     x = triangles.corners[slot // 3, slot % 3]
     return x[0], x[1], x[2]
 
 
-@bare
+@compiled(arrays=False)
 def reframe(triangles, face, g):  # type: ignore[no-untyped-def]
     """See a triangle from another frame; g is the isometry from its old frame to the new one, in no array of triangles.
 
@@ -212,7 +175,7 @@ def reframe(triangles, face, g):  # type: ignore[no-untyped-def]
         copy(moved, triangles.route[face])
 
 
-@bare
+@compiled(arrays=False)
 def _rewire(triangles, old, new, turned):  # type: ignore[no-untyped-def]
     """Move outer halfedges of some triangles in one frame to other slots; turned: they run the other way there."""
     count = len(old)
@@ -238,20 +201,20 @@ def _rewire(triangles, old, new, turned):  # type: ignore[no-untyped-def]
             triangles.twin[t], triangles.same[t] = e, flags[k] != turned
 
 
-@bare
+@compiled(arrays=False)
 def _join_inside(triangles, a, b):  # type: ignore[no-untyped-def]
     """Glue two halfedges of triangles in one frame."""
     triangles.twin[a], triangles.twin[b] = b, a
     triangles.same[a] = triangles.same[b] = False
-    _set_identity(triangles.gluing[a])
-    _set_identity(triangles.gluing[b])
+    set_identity(triangles.gluing[a])
+    set_identity(triangles.gluing[b])
 
 
-@bare
+@compiled(arrays=False)
 def _mirror(triangles, face):  # type: ignore[no-untyped-def]
     """See a triangle from the mirror image of its frame; its corners 1 and 2 change places."""
     mirror = triangles.work[6]
-    _set_identity(mirror)
+    set_identity(mirror)
     mirror[2, 2] = -1.0
     reframe(triangles, face, mirror)
     e = 3 * face
@@ -264,7 +227,7 @@ def _mirror(triangles, face):  # type: ignore[no-untyped-def]
         triangles.placement[face, i, 2] = -triangles.placement[face, i, 2]
 
 
-@bare
+@compiled(arrays=False)
 def recentre(triangles, face):  # type: ignore[no-untyped-def]
     """Give a triangle of H^2 that is far from the origin of its frame a frame at its centre: digits are lost far out.
 
@@ -287,7 +250,7 @@ def recentre(triangles, face):  # type: ignore[no-untyped-def]
     return True
 
 
-@bare
+@compiled(arrays=False)
 def _attach_alike(triangles, face, other, across):  # type: ignore[no-untyped-def]
     """Attach two triangles in one frame to the nearer of their patches; the other came by the isometry `across`."""
     if triangles.curvature < 0 and triangles.placement[face, 0, 0] > _NEAR_PATCH:
@@ -301,7 +264,7 @@ def _attach_alike(triangles, face, other, across):  # type: ignore[no-untyped-de
     copy(triangles.placement[face], triangles.placement[other])
 
 
-@bare
+@compiled(arrays=False)
 def adopt(triangles, e):  # type: ignore[no-untyped-def]
     """Bring the triangle across halfedge e, another one, into the frame of the triangle of e; returns the twin of e."""
     face = e // 3
@@ -317,7 +280,7 @@ def adopt(triangles, e):  # type: ignore[no-untyped-def]
     return t
 
 
-@bare
+@compiled(arrays=False)
 def flip(triangles, e):  # type: ignore[no-untyped-def]
     """Replace an edge between two different triangles by the other diagonal of their quadrilateral.
 
@@ -340,7 +303,7 @@ def flip(triangles, e):  # type: ignore[no-untyped-def]
     place(triangles, g + 2, va, a)
 
 
-@bare
+@compiled(arrays=False)
 def split(triangles, face, x, vertex, second, third):  # type: ignore[no-untyped-def]
     """A new vertex at x in a triangle: three triangles, with x at corner 2, in this slot and two free ones."""
     f, g, h = 3 * face, 3 * second, 3 * third
@@ -363,7 +326,7 @@ def split(triangles, face, x, vertex, second, third):  # type: ignore[no-untyped
         place(triangles, slot + 2, vertex, x)
 
 
-@bare
+@compiled(arrays=False)
 def merge(triangles, e):  # type: ignore[no-untyped-def]
     """Remove the vertex where e starts, a corner of three triangles: they become one, in the slot of the first."""
     f = 3 * (e // 3)

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from orbiframe.compiled.decorator import compiled
 from orbiframe.orbifolds.atlas import Atlas, Points
 from orbiframe.orbifolds.orbifold import Orbifold
 
@@ -99,7 +99,7 @@ def _entries(atlas: Atlas) -> tuple[Ints, NDArray[np.int32], Floats]:
     return begins, atlas.tail[order].astype(np.int32), np.ascontiguousarray(atlas.isometry[order])
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def _within(curvature, x0, x1, x2, a, b):  # type: ignore[no-untyped-def]
     """Whether the distance from the origin is at most that of half-sine a plus that of half-sine b."""
     if curvature > 0 and a * a + b * b >= 1:
@@ -110,7 +110,7 @@ def _within(curvature, x0, x1, x2, a, b):  # type: ignore[no-untyped-def]
     return square <= total * total
 
 
-@njit(cache=True)
+@compiled
 def _walk(curvature, begins, leads, moves, x, patch, reach, disc, passed):  # type: ignore[no-untyped-def]
     """Breadth first from each centre: the patch, the centre and the place of every image that reaches a disc."""
     found_patch, found_column = np.empty(1024, dtype=np.int32), np.empty(1024, dtype=np.int32)
@@ -121,7 +121,7 @@ def _walk(curvature, begins, leads, moves, x, patch, reach, disc, passed):  # ty
     place = np.empty((256, 3))
     for m in range(len(x)):
         here[0], following[0], first[patch[m]] = patch[m], -1, 0
-        place[0] = x[m]
+        place[0, 0], place[0, 1], place[0, 2] = x[m, 0], x[m, 1], x[m, 2]
         done, size = 0, 1
         while done < size:
             p, x0, x1, x2 = here[done], place[done, 0], place[done, 1], place[done, 2]
@@ -163,17 +163,20 @@ def _walk(curvature, begins, leads, moves, x, patch, reach, disc, passed):  # ty
     return found_patch[:count], found_column[:count], found_x[:count]
 
 
-@njit(cache=True)
+@compiled
 def _doubled(values):  # type: ignore[no-untyped-def]
     """Room for twice as many values."""
     larger = np.empty(2 * len(values), dtype=values.dtype)
-    larger[: len(values)] = values
+    for k in range(len(values)):
+        larger[k] = values[k]
     return larger
 
 
-@njit(cache=True)
+@compiled
 def _doubled_rows(values):  # type: ignore[no-untyped-def]
     """Room for twice as many rows."""
     larger = np.empty((2 * len(values), values.shape[1]))
-    larger[: len(values)] = values
+    for k in range(len(values)):
+        for c in range(values.shape[1]):
+            larger[k, c] = values[k, c]
     return larger

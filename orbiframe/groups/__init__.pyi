@@ -9,7 +9,7 @@ from .conway_group import (
 from .dirichlet_domain import (
     DirichletDomain as DirichletDomain,
     Generators as Generators,
-    dirichlet_domain as dirichlet_domain,
+    dirichlet_domain_of as dirichlet_domain_of,
     lettered_pairings as lettered_pairings,
 )
 from .elements import (

@@ -69,7 +69,7 @@ class DirichletDomain(Generators):
         return float(self.geometry.distance(self.geometry.origin, self.vertices).max())
 
 
-def dirichlet_domain(group: Group) -> DirichletDomain:
+def dirichlet_domain_of(group: Group) -> DirichletDomain:
     """The Dirichlet domain of a group about the origin.
 
     It starts from `group.pairings()`, those of the sides of the domain of the group. As long as the polygon of their

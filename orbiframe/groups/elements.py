@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from orbiframe.errors import GeometryError
-from orbiframe.groups.dirichlet_domain import DirichletDomain, Generators, dirichlet_domain
+from orbiframe.groups.dirichlet_domain import DirichletDomain, Generators, dirichlet_domain_of
 from orbiframe.groups.element_tree import DONE, MANY, ON_RIM, TIED, grow
 from orbiframe.groups.group import Group
 from orbiframe.planes.precise_isometry import PreciseIsometry
@@ -90,7 +90,7 @@ def elements_within(group: Group, radius: float, *, most: int = _MOST) -> Elemen
     that nothing is looked up and nothing comes twice. Raises GeometryError where rounding decides whether an element
     is on the rim of the disc or which side is the first, and where there are more than `most` elements.
     """
-    return elements_of_domain(dirichlet_domain(group), group.area, radius, most=most)
+    return elements_of_domain(dirichlet_domain_of(group), group.area, radius, most=most)
 
 
 def elements_of_domain(domain: DirichletDomain, area: float, radius: float, *, most: int = _MOST) -> Elements:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from orbiframe.errors import GeometryError
-from orbiframe.groups.dirichlet_domain import DirichletDomain, dirichlet_domain
+from orbiframe.groups.dirichlet_domain import DirichletDomain, dirichlet_domain_of
 from orbiframe.groups.elements import elements_of_domain
 from orbiframe.groups.fundamental_polygon import FundamentalPolygon
 from orbiframe.groups.group import Group
@@ -50,7 +50,7 @@ class PolygonGroup(Group):
         """The pairing of `word.generator_side(label)`."""
         return np.asarray(self.polygon.pairings[self.word.generator_side(label)])
 
-    def generator_spin(self, label: int) -> PreciseIsometry:
+    def precise_generator(self, label: int) -> PreciseIsometry:
         """The pairing of `word.generator_side(label)`."""
         return self.pairings()[self.word.generator_side(label)]
 
@@ -73,7 +73,7 @@ class PolygonGroup(Group):
     @cached_property
     def dirichlet_domain(self) -> DirichletDomain:
         """The points that are nearer to the origin than to its images; the polygon itself where it is regular."""
-        return dirichlet_domain(self)
+        return dirichlet_domain_of(self)
 
     def tiles(self, radius: float) -> Floats:
         """Every g whose tile meets the disc: of those with a centre near enough, see `elements_within`."""

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from orbiframe.compiled.decorator import compiled
 from orbiframe.meshes.polyhedron import Polyhedron
 
 Floats = NDArray[np.float64]
@@ -40,12 +40,21 @@ class FlatFlips:
     halfedge: Ints
     crossing: Floats
 
-    @cached_property
+    @property
     def after(self) -> Polyhedron:
         """The mesh at the end."""
+        return self._replayed[0]
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether the two halfedges of every flip were twins that run in opposite directions when it was made."""
+        return self._replayed[1]
+
+    @cached_property
+    def _replayed(self) -> tuple[Polyhedron, bool]:
         tail, twin, same = self.before.tail.copy(), self.before.twin.copy(), self.before.same.copy()
-        _replay(tail, twin, same, self.halfedge)
-        return Polyhedron(self.before.vertices, self.before.offsets, tail, twin, same)
+        sound = bool(_replay(tail, twin, same, self.halfedge))
+        return Polyhedron(self.before.vertices, self.before.offsets, tail, twin, same), sound
 
     def locate(self, face: Ints, barycentric: Floats) -> tuple[Ints, Floats]:
         """Points (n,) of triangles before, with barycentric coordinates (n, 3), in the triangles after."""
@@ -73,32 +82,32 @@ def flat_flips(mesh: Polyhedron) -> FlatFlips:
     return FlatFlips(mesh, halfedge, crossing)
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def _next(h):  # type: ignore[no-untyped-def]
     return h + 1 if h % 3 < 2 else h - 2
 
 
-@njit(cache=True)
+@compiled
 def _cross(a, b):  # type: ignore[no-untyped-def]
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-@njit(cache=True)
+@compiled
 def _dot(a, b):  # type: ignore[no-untyped-def]
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@njit(cache=True)
+@compiled
 def _minus(p, i, j):  # type: ignore[no-untyped-def]
     return p[i, 0] - p[j, 0], p[i, 1] - p[j, 1], p[i, 2] - p[j, 2]
 
 
-@njit(cache=True)
+@compiled
 def _length(a):  # type: ignore[no-untyped-def]
     return np.sqrt(_dot(a, a))
 
 
-@njit(cache=True)
+@compiled
 def _crossing(p, i, j, k, m, flat):  # type: ignore[no-untyped-def]
     """Whether the edge i-j should become k-m, and where they cross: shares of i-j and of k-m."""
     no = False, 0.0, 0.0
@@ -128,7 +137,7 @@ def _crossing(p, i, j, k, m, flat):  # type: ignore[no-untyped-def]
     return _shares(p, i, k, e, d, near / (near + far), max(top, 0.0) / (max(top, 0.0) + max(bottom, 0.0)))
 
 
-@njit(cache=True)
+@compiled
 def _shares(p, i, k, e, d, old, new):  # type: ignore[no-untyped-def]
     """That the edges cross, and where: between thin triangles their directions tell little, so that the share of the
 
@@ -142,7 +151,7 @@ def _shares(p, i, k, e, d, old, new):  # type: ignore[no-untyped-def]
     return 0 < old < 1, old, min(max(new, 0.0), 1.0)
 
 
-@njit(cache=True)
+@compiled
 def _flip(tail, twin, same, h, t):  # type: ignore[no-untyped-def]
     """Turn the edge of the halfedges h, t of two triangles; see `FlatFlips`."""
     hn, tn = _next(h), _next(t)
@@ -162,7 +171,7 @@ def _flip(tail, twin, same, h, t):  # type: ignore[no-untyped-def]
     tail[t], tail[tn], tail[tp] = k, m, j
 
 
-@njit(cache=True)
+@compiled
 def _flip_all(p, tail, twin, same, flat, limit):  # type: ignore[no-untyped-def]
     """Flip until no edge should be flipped; the halfedges of every flip and where its edges cross."""
     stack = [h for h in range(len(tail)) if h < twin[h]]
@@ -196,13 +205,18 @@ def _flip_all(p, tail, twin, same, flat, limit):  # type: ignore[no-untyped-def]
     return halfedge, crossing
 
 
-@njit(cache=True)
+@compiled
 def _replay(tail, twin, same, halfedge):  # type: ignore[no-untyped-def]
+    """Flip again; False, and no further, where two halfedges are no twins."""
     for n in range(len(halfedge)):
-        _flip(tail, twin, same, halfedge[n, 0], halfedge[n, 1])
+        h, t = halfedge[n]
+        if twin[h] != t or same[h] or h // 3 == t // 3:
+            return False
+        _flip(tail, twin, same, h, t)
+    return True
 
 
-@njit(cache=True)
+@compiled
 def _carry(place, weights, halfedge, crossing, faces):  # type: ignore[no-untyped-def]
     """Points follow the flips: those of the two triangles of a flip are spread anew over the two that it makes.
 
@@ -241,14 +255,23 @@ def _carry(place, weights, halfedge, crossing, faces):  # type: ignore[no-untype
                 point = after
 
 
-@njit(cache=True)
+@compiled
 def _undo(steps, halfedge):  # type: ignore[no-untyped-def]
     """Take the flips back, last first: the old edge gets the product along two sides of its quadrilateral."""
+    size = steps.shape[1]
+    forth, back = np.empty((size, size)), np.empty((size, size))
     for n in range(len(halfedge) - 1, -1, -1):
         h, t = halfedge[n]
         hn, tn = _next(h), _next(t)
         hp, tp = _next(hn), _next(tn)
-        forth, back = steps[hp] @ steps[tn], steps[tp] @ steps[hn]
-        onward, outward, inward, homeward = steps[hn].copy(), steps[hp].copy(), steps[tn].copy(), steps[tp].copy()
-        steps[h], steps[t] = forth, back
-        steps[hp], steps[tn], steps[tp], steps[hn] = onward, outward, inward, homeward
+        for a in range(size):
+            for b in range(size):
+                forth[a, b] = back[a, b] = 0.0
+                for c in range(size):
+                    forth[a, b] += steps[hp, a, c] * steps[tn, c, b]
+                    back[a, b] += steps[tp, a, c] * steps[hn, c, b]
+        for a in range(size):
+            for b in range(size):
+                steps[h, a, b], steps[t, a, b] = forth[a, b], back[a, b]
+                first, second, third, last = steps[hn, a, b], steps[hp, a, b], steps[tn, a, b], steps[tp, a, b]
+                steps[hp, a, b], steps[tn, a, b], steps[tp, a, b], steps[hn, a, b] = first, second, third, last

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from orbiframe.functions.basis import JET_KINDS, DifferentiableBasis
+from orbiframe.functions.basis import JET_KINDS, PiecewiseBasis
 from orbiframe.functions.jet_quotient import divide_jets
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.splines.bernstein import coefficient_count
@@ -24,7 +24,7 @@ Ints = NDArray[np.intp]
 _BLOCK = 1024  # points that are located, then evaluated
 
 
-class ElementBasis(DifferentiableBasis):
+class ElementBasis(PiecewiseBasis):
     """Functions that are homogeneous polynomials of one degree on every micro triangle of a geodesic triangulation.
 
     A function on X/H is f = F restricted to X, where F is a polynomial in R^3 on the cone over each micro triangle.
@@ -60,12 +60,8 @@ class ElementBasis(DifferentiableBasis):
         divided = rational and degree % 2 == 1 and domain.geometry.curvature != 0
         self.weights = nearest_to_one(self) if divided else None
 
-    def design_matrix(self, points: Points) -> csr_array:
-        """The values of all functions at n points, sparse (n, size)."""
-        return self.jet_matrices(points, 0)[0]
-
     def jet_matrices(self, points: Points, order: int) -> list[csr_array]:
-        """See `DifferentiableBasis`."""
+        """See `PiecewiseBasis`."""
         location = self.locator.locate(points, frames=order > 0)
         face = np.empty_like(location.face)
         face[location.order] = location.face
@@ -115,7 +111,7 @@ class ElementBasis(DifferentiableBasis):
         return values
 
     def jets(self, points: Points, coefficients: Floats, order: int) -> Floats:
-        """See `DifferentiableBasis`; evaluated from the Bernstein coefficients, without a design matrix."""
+        """See `PiecewiseBasis`; evaluated from the Bernstein coefficients, without a design matrix."""
         location = self.locator.locate(points, frames=order > 0)
         if self.weights is None:
             return self._polynomial_jets(location, coefficients, order)

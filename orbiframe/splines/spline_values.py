@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from orbiframe.compiled.decorator import compiled
 from orbiframe.splines.bernstein_kernels import fan_triangle, micro_heights, micro_triangle
 from orbiframe.triangulations.point_location import square_of, walk
 
-# They make no array, so they need not count who refers to the arrays they are given.
-_bare = njit(cache=True, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
 
-
-@_bare
+@compiled(arrays=False, may_divide_by_zero=True)
 def spline_values(points, grid, steps, split, nets, form, work, values):  # type: ignore[no-untyped-def]
     """Values of functions with given Bernstein coefficients; returns the first point without a triangle, or -1.
 
@@ -32,7 +29,7 @@ def spline_values(points, grid, steps, split, nets, form, work, values):  # type
     return -1
 
 
-@_bare
+@compiled(arrays=False, may_divide_by_zero=True)
 def _locate(begin, end, points, grid, steps, split, work):  # type: ignore[no-untyped-def]
     """The micro triangles of a block of points, with the barycentric coordinates in them."""
     patch, x = points
@@ -72,7 +69,7 @@ def _locate(begin, end, points, grid, steps, split, work):  # type: ignore[no-un
     return -1
 
 
-@_bare
+@compiled(arrays=False, may_divide_by_zero=True)
 def _evaluate(begin, end, nets, form, work, values):  # type: ignore[no-untyped-def]
     """The values at a block of points by tabulated powers of their coordinates."""
     degree, multinomials, rational = form

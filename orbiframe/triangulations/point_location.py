@@ -7,9 +7,10 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from orbiframe.compiled.decorator import compiled
+from orbiframe.compiled.matrices import copy
 from orbiframe.errors import FitError
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
@@ -129,36 +130,50 @@ def require_found(failed: int, points: Points, order: Ints | None = None) -> Non
         )
 
 
-@njit(cache=True)
+@compiled(may_divide_by_zero=True, inline=True)
+def _way_out(inverse, face, x0, x1, x2):  # type: ignore[no-untyped-def]
+    """The barycentric coordinates of a point, and the edge that it is farthest beyond; -1: inside, -2: not finite."""
+    a = inverse[face, 0, 0] * x0 + inverse[face, 0, 1] * x1 + inverse[face, 0, 2] * x2
+    b = inverse[face, 1, 0] * x0 + inverse[face, 1, 1] * x1 + inverse[face, 1, 2] * x2
+    c = inverse[face, 2, 0] * x0 + inverse[face, 2, 1] * x1 + inverse[face, 2, 2] * x2
+    total = abs(a + b + c)
+    least = min(a, min(b, c))
+    # Edge c lies opposite corner c + 2.
+    way = 1 if least == a else 2 if least == b else 0
+    if least >= -_ON_EDGE * total:
+        way = -1
+    elif not total < np.inf:
+        way = -2
+    return a, b, c, way
+
+
+@compiled(may_divide_by_zero=True, inline=True)
+def _carried(g, x0, x1, x2):  # type: ignore[no-untyped-def]
+    """g x, as three numbers."""
+    return (
+        g[0, 0] * x0 + g[0, 1] * x1 + g[0, 2] * x2,
+        g[1, 0] * x0 + g[1, 1] * x1 + g[1, 2] * x2,
+        g[2, 0] * x0 + g[2, 1] * x1 + g[2, 2] * x2,
+    )
+
+
+@compiled
 def _walk_one(face, columns, inverse, twin, across):  # type: ignore[no-untyped-def]
     """Move columns (3, m), the first a point, from triangle to triangle until it is inside; the last one, or -1."""
-    width = columns.shape[1]
     for _ in range(_MOST_STEPS):
-        worst, least, total = 0, np.inf, 0.0
-        for i in range(3):
-            height = (
-                inverse[face, i, 0] * columns[0, 0]
-                + inverse[face, i, 1] * columns[1, 0]
-                + inverse[face, i, 2] * columns[2, 0]
+        _, _, _, way = _way_out(inverse, face, columns[0, 0], columns[1, 0], columns[2, 0])
+        if way < 0:
+            return face if way == -1 else -1
+        edge = 3 * face + way
+        for k in range(columns.shape[1]):
+            columns[0, k], columns[1, k], columns[2, k] = _carried(
+                across[edge], columns[0, k], columns[1, k], columns[2, k]
             )
-            total += height
-            if height < least:
-                worst, least = i, height
-        if not np.isfinite(total):
-            return -1
-        if least >= -_ON_EDGE * abs(total):
-            return face
-        # Halfedge c lies opposite corner c + 2.
-        edge = 3 * face + (worst + 1) % 3
-        for k in range(width):
-            a, b, c = columns[0, k], columns[1, k], columns[2, k]
-            for i in range(3):
-                columns[i, k] = across[edge, i, 0] * a + across[edge, i, 1] * b + across[edge, i, 2] * c
         face = twin[edge] // 3
     return -1
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(may_divide_by_zero=True, inline=True)
 def square_of(x0, x1, x2, half_width, squares):  # type: ignore[no-untyped-def]
     """The square of the grid, of `squares` times `squares`, in which a point of a patch lies, or the nearest one."""
     scale = squares / (2 * half_width * (1 + abs(x0)))
@@ -167,34 +182,24 @@ def square_of(x0, x1, x2, half_width, squares):  # type: ignore[no-untyped-def]
     return i, j
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(may_divide_by_zero=True, inline=True)
 def walk(face, x0, x1, x2, inverse, twin, across):  # type: ignore[no-untyped-def]
     """From triangle to triangle until the point is inside: face, the point in its frame, barycentric coordinates.
 
     The face is -1 where no triangle holds the point.
     """
     for _ in range(_MOST_STEPS):
-        a = inverse[face, 0, 0] * x0 + inverse[face, 0, 1] * x1 + inverse[face, 0, 2] * x2
-        b = inverse[face, 1, 0] * x0 + inverse[face, 1, 1] * x1 + inverse[face, 1, 2] * x2
-        c = inverse[face, 2, 0] * x0 + inverse[face, 2, 1] * x1 + inverse[face, 2, 2] * x2
-        total = abs(a + b + c)
-        least = min(a, min(b, c))
-        if least >= -_ON_EDGE * total:
+        a, b, c, way = _way_out(inverse, face, x0, x1, x2)
+        if way == -1:
             return face, x0, x1, x2, a, b, c
-        if not total < np.inf:
+        if way < 0:
             break
-        # Halfedge c lies opposite corner c + 2.
-        edge = 3 * face + (1 if least == a else 2 if least == b else 0)
-        x0, x1, x2 = (
-            across[edge, 0, 0] * x0 + across[edge, 0, 1] * x1 + across[edge, 0, 2] * x2,
-            across[edge, 1, 0] * x0 + across[edge, 1, 1] * x1 + across[edge, 1, 2] * x2,
-            across[edge, 2, 0] * x0 + across[edge, 2, 1] * x1 + across[edge, 2, 2] * x2,
-        )
-        face = twin[edge] // 3
+        x0, x1, x2 = _carried(across[3 * face + way], x0, x1, x2)
+        face = twin[3 * face + way] // 3
     return -1, x0, x1, x2, 0.0, 0.0, 0.0
 
 
-@njit(cache=True)
+@compiled
 def _order_by_square(patch, x, half_width, shape, order):  # type: ignore[no-untyped-def]
     """Sort the numbers of the points by the squares of the grid, counting."""
     sides, squares = shape[1], shape[2]
@@ -215,7 +220,7 @@ def _order_by_square(patch, x, half_width, shape, order):  # type: ignore[no-unt
         start[key[n]] += 1
 
 
-@njit(cache=True)
+@compiled
 def _walk_all(patch, face, moved, steps, grid):  # type: ignore[no-untyped-def]
     """Locate every point; returns the first that has no triangle, or -1."""
     grid_face, grid_isometry, half_width = grid
@@ -238,7 +243,7 @@ def _walk_all(patch, face, moved, steps, grid):  # type: ignore[no-untyped-def]
     return -1
 
 
-@njit(cache=True)
+@compiled
 def _centre(curvature, i, j, squares, half_width):  # type: ignore[no-untyped-def]
     """The middle of a square as a point of X; in H^2 and E^2 not beyond the patch, in S^2 on the side x0 > 0."""
     u = ((2 * i + 1) / squares - 1) * half_width
@@ -252,26 +257,30 @@ def _centre(curvature, i, j, squares, half_width):  # type: ignore[no-untyped-de
     return (1 - square) / (1 + square), 2 * u / (1 + square), 2 * v / (1 + square)
 
 
-@njit(cache=True)
+@compiled
 def _fill_grid(curvature, seed, isometry, steps, grid_face, grid_isometry, half_width):  # type: ignore[no-untyped-def]
     """The triangle at the centre of every square: every row starts from the row before, so that no walk is long."""
     inverse, twin, across = steps
     squares = grid_face.shape[2]
-    columns = np.empty((3, 4))
+    columns, g, row_isometry = np.empty((3, 4)), np.empty((3, 3)), np.empty((3, 3))
     for p in range(len(seed)):
         for side in range(grid_face.shape[1]):
-            row_face, row_isometry = seed[p], isometry[p].copy()
+            row_face = seed[p]
+            copy(isometry[p], row_isometry)
             for i in range(squares):
-                face, g = row_face, row_isometry.copy()
+                face = row_face
+                copy(row_isometry, g)
                 for j in range(squares):
                     x0, x1, x2 = _centre(curvature, i, j, squares, half_width[p])
                     x0 = -x0 if side else x0
                     for row in range(3):
                         columns[row, 0] = g[row, 0] * x0 + g[row, 1] * x1 + g[row, 2] * x2
-                        columns[row, 1:] = g[row]
+                        columns[row, 1], columns[row, 2], columns[row, 3] = g[row, 0], g[row, 1], g[row, 2]
                     face = _walk_one(face, columns, inverse, twin, across)
-                    g[:] = columns[:, 1:]
+                    for row in range(3):
+                        g[row, 0], g[row, 1], g[row, 2] = columns[row, 1], columns[row, 2], columns[row, 3]
                     grid_face[p, side, i, j] = face
-                    grid_isometry[p, side, i, j] = g
+                    copy(g, grid_isometry[p, side, i, j])
                     if j == 0:
-                        row_face, row_isometry = face, g.copy()
+                        row_face = face
+                        copy(g, row_isometry)

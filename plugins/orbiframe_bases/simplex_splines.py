@@ -76,10 +76,6 @@ class SimplexSplines(DifferentiableBasis):
         if degree % 2 == 1 and domain.geometry.curvature != 0:
             self.weights = self._nearest_to_one()
 
-    def design_matrix(self, points: Points) -> csr_array:
-        """The values of all functions at n points, sparse (n, size)."""
-        return self.jet_matrices(points, 0)[0]
-
     def jet_matrices(self, points: Points, order: int) -> list[csr_array]:
         """See `DifferentiableBasis`."""
         place = self._place(points)

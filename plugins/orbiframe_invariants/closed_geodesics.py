@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from orbiframe import GeometryError, Group
-from orbiframe.groups import DirichletDomain, Elements, dirichlet_domain, elements_of_domain
+from orbiframe.groups import DirichletDomain, Elements, dirichlet_domain_of, elements_of_domain
 from orbiframe.planes import PreciseIsometry
 
 Floats = NDArray[np.float64]
@@ -69,7 +69,7 @@ def length_spectrum(group: Group, up_to: float) -> LengthSpectrum:
     Raises GeometryError where rounding decides: where the conjugates of an element are not found, lengths of one class
     differ by more than 1e-8, or those of two by less than 1e-6 and more than that; and for too many elements.
     """
-    return _spectrum(group, dirichlet_domain(group), up_to)
+    return _spectrum(group, dirichlet_domain_of(group), up_to)
 
 
 def systole(group: Group) -> Systole:
@@ -78,7 +78,7 @@ def systole(group: Group) -> Systole:
     On an orbifold with singular points, those that cannot be drawn into one of them either. Raises GeometryError for
     the sphere, where every curve can be contracted.
     """
-    domain = dirichlet_domain(group)
+    domain = dirichlet_domain_of(group)
     lengths = translation_lengths(domain.precise)
     lengths = lengths[lengths > _EQUAL]
     if group.geometry.curvature > 0 and not len(lengths):

@@ -68,7 +68,7 @@ def listen(event, arguments):
 sys.addaudithook(listen)
 if len(sys.argv) > 2:
     import importlib
-    function = getattr(importlib.import_module("orbiframe_meshio.micro_triangles"), "polyhedron_of")
+    function = getattr(importlib.import_module("orbiframe_meshio.cells"), "polyhedron_of")
 else:
     registry = Registry.discover()
     function = lambda path: gate.read(path, registry)

@@ -12,7 +12,7 @@ from reference_geometries import GEOMETRIES
 from reference_surfaces import brute_force_group
 
 from orbiframe import FundamentalPolygon, GeometryError, Word
-from orbiframe.groups import PolygonGroup, dirichlet_domain, elements_within, regular_polygon
+from orbiframe.groups import PolygonGroup, dirichlet_domain_of, elements_within, regular_polygon
 from orbiframe.groups.conway_group import orbifold_group
 from orbiframe.words.conway_symbol import ConwaySymbol
 
@@ -70,7 +70,7 @@ def test_elements_of_a_lattice_are_its_points_in_the_disc(shear: float, height: 
 
 def test_a_slender_parallelogram_has_a_round_dirichlet_cell() -> None:
     """The cell of the lattice of (1, 0) and (n + 1/2, 1) is that of (1, 0) and (1/2, 1): circumradius 5/8."""
-    cell = dirichlet_domain(lattice_group(E2, Word.parse("abAB"), second=(30.5, 1.0)))
+    cell = dirichlet_domain_of(lattice_group(E2, Word.parse("abAB"), second=(30.5, 1.0)))
     assert cell.side_count == 6
     assert cell.circumradius == pytest.approx(5 / 8, abs=1e-12)
 
@@ -97,7 +97,7 @@ def test_each_element_comes_once_and_none_is_missing(make) -> None:
 
 def test_the_dirichlet_cell_of_a_regular_polygon_is_the_polygon() -> None:
     group = regular("aabbcc")
-    cell = dirichlet_domain(group)
+    cell = dirichlet_domain_of(group)
     apart = H2.distance(cell.vertices[:, None], group.polygon.vertices).min(axis=1)
     assert cell.side_count == 6
     assert apart.max() < 1e-12

@@ -9,7 +9,6 @@ from fitted import REGISTRY, config
 from hypothesis import given, settings, strategies as st
 from scipy.spatial import Delaunay
 
-from orbiframe.errors import TopologyError
 from orbiframe.fitting import pipeline
 from orbiframe.meshes.bisection import bisected, edge_length_for
 from orbiframe.meshes.face_diagonals import triangulated
@@ -122,13 +121,6 @@ def test_curved_parts_are_left_alone() -> None:
     mesh = hard.stretched(triangulated(reference_polyhedra()["torus"]), 20, 1, 1)
     bent = mesh.with_vertices(mesh.vertices + 1e-6 * np.random.default_rng(0).normal(size=mesh.vertices.shape))
     assert len(flat_flips(bent).halfedge) == 0
-
-
-def test_values_at_corners_need_a_mesh_without_flips() -> None:
-    mesh = spoiled(1)
-    forest = bisected(mesh, np.inf, True, flat_flips(mesh))
-    with pytest.raises(TopologyError, match="flips"):
-        forest.spread(np.zeros((mesh.face_count, 3, 2)))
 
 
 def test_bisection_of_flipped_needles_needs_no_more_vertices_than_are_aimed_at() -> None:

@@ -187,5 +187,5 @@ def bent(amount: float) -> PolygonGroup:
 def test_the_error_shows_pairings_that_are_no_group() -> None:
     assert length_spectrum(regular("abABcdCD"), 7.0).error < 1e-11
     assert 1e-10 < length_spectrum(bent(1e-10), 7.0).error < 1e-7
-    with pytest.raises(GeometryError, match="Dirichlet cell"):
+    with pytest.raises(GeometryError, match="Dirichlet domain"):
         length_spectrum(bent(1e-6), 7.0)
