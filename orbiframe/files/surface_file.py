@@ -78,7 +78,11 @@ _SHAPES: dict[str, tuple[type, tuple[int | str, ...]]] = {
     "scale": (np.float64, ()),
 }
 # Arrays that some surfaces have.
-_OPTIONAL: dict[str, tuple[type, tuple[int | str, ...]]] = {"density": (np.float64, ("W",))}
+_OPTIONAL: dict[str, tuple[type, tuple[int | str, ...]]] = {
+    "density": (np.float64, ("W",)),
+    "flip_halfedge": (np.intp, ("L", 2)),
+    "flip_crossing": (np.float64, ("L", 2)),
+}
 _KINDS = _SHAPES | _OPTIONAL
 
 
@@ -276,4 +280,6 @@ def _arrays(surface: OrbifoldSurface) -> dict[str, NDArray[Any]]:
 
 
 def _optional(surface: OrbifoldSurface) -> dict[str, NDArray[Any] | None]:
-    return {"density": surface.triangulation.density}
+    flips = surface.refinement.flips
+    turned = {} if flips is None else {"flip_halfedge": flips.halfedge, "flip_crossing": flips.crossing}
+    return {"density": surface.triangulation.density, **turned}
