@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from orbiframe.compiled.decorator import compiled
 from orbiframe.meshes.edge_paths import curve_order
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Copies, Orbifold
@@ -141,7 +141,7 @@ def _pairs_of_block(orbifold: Orbifold, images: _Images, rows: Ints, x: Floats, 
     return Pairs(rows, start, images.column[image], versine, slope, tests)
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def _versine(curvature, x0, x1, x2, y0, y1, y2):  # type: ignore[no-untyped-def]
     """The versine of two points as a sum of positive terms, so that near points keep all their digits."""
     v1, v2 = y1 - x1, y2 - x2
@@ -157,7 +157,7 @@ def _versine(curvature, x0, x1, x2, y0, y1, y2):  # type: ignore[no-untyped-def]
     return (v1 * v1 + v2 * v2 + cross * cross) / (1 + x0 * y0 + dot)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(may_divide_by_zero=True)
 def _balls(curvature, x, levels):  # type: ignore[no-untyped-def]
     """A ball about each node of the tree: a point in it, and the largest sqrt(versine / 2) to its points.
 
@@ -191,7 +191,7 @@ def _balls(curvature, x, levels):  # type: ignore[no-untyped-def]
     return centre, spread
 
 
-@njit(cache=True)
+@compiled
 def _search(tree, images, support, cursor, found, versine, fill):  # type: ignore[no-untyped-def]
     """Count the images that reach each point, or write them and their versines from `cursor` on.
 
@@ -247,7 +247,7 @@ def _search(tree, images, support, cursor, found, versine, fill):  # type: ignor
     return tests
 
 
-@njit(cache=True)
+@compiled
 def _slopes(curvature, x, frame, start, images):  # type: ignore[no-untyped-def]
     """D_u c = -<u, m - x> for the unit tangents u of the frame at x, since <u, x> = 0; the difference is exact."""
     slope = np.empty((len(images), 2))

@@ -39,10 +39,6 @@ class OrbitSumBasis(DifferentiableBasis):
     def profile(self, t: Floats) -> tuple[Floats, ...]:
         """f, f' and f'' at t >= 0, (n,) each: positive before 1, zero from 1 on; f''' too, for jets of order 3."""
 
-    def design_matrix(self, points: Points) -> csr_array:
-        """The values of all functions at n points, sparse (n, size). Raises FitError at a point that none reaches."""
-        return self.jet_matrices(points, 0)[0]
-
     def jet_matrices(self, points: Points, order: int) -> list[csr_array]:
         """See `DifferentiableBasis`. Raises FitError at a point that no function reaches.
 

@@ -14,7 +14,7 @@ from orbiframe.triangulations import GeodesicTriangulation
 from orbiframe_bases.bernstein import shared_numbers
 from orbiframe_bases.knot_clouds import flatness, knot_clouds
 from orbiframe_bases.simplex_program import cloud_program
-from orbiframe_bases.simplex_splines import Elements, SimplexSplines
+from orbiframe_bases.simplex_splines import KnotSets, SimplexSplines
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -67,7 +67,7 @@ class DMS(SimplexSplines):
         face = np.arange(domain.face_count)
         knots = clouds.reshape(len(face), -1, 3)
         none = np.zeros((0, 0, 3))
-        super().__init__(domain, degree, Elements(cloud_program(degree), face, knots, factor, none, column, size))
+        super().__init__(domain, degree, KnotSets(cloud_program(degree), face, knots, factor, none, column, size))
 
 
 def corner_clouds(domain: GeodesicTriangulation, degree: int, radius: float) -> Floats:

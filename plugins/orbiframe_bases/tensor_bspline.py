@@ -88,10 +88,6 @@ class TensorBSpline(TensorBasis):
         """See `TensorBasis`."""
         return np.asarray(coefficients[self.number])
 
-    def design_matrix(self, points: Points) -> csr_array:
-        """The values of all functions at n points, sparse (n, size)."""
-        return self.jet_matrices(points, 0)[0]
-
     def jet_matrices(self, points: Points, order: int) -> list[csr_array]:
         """See `DifferentiableBasis`; the frames are flat, so covariant derivatives are plain ones."""
         place = self.lattice.coordinates(points)

@@ -25,13 +25,14 @@ def with_relations(geometry: Geometry, transition: Ints, isometry: Floats) -> Fl
     transition: (H,), three for each triangle; isometries come in pairs of inverses 2k + 1, 2k + 2 after the identity.
     Each free one is multiplied by exp(xi); the relations are linear in xi up to second order, and the least xi is
     found from the normal equations, factored once, again as long as the defect falls (Gauss-Newton). Turning and moving
-    the frame of a patch breaks no relation; a tiny shift of the matrix holds the frames still.
+    the frame of a patch breaks no relation; a tiny shift of the matrix holds the frames still. First the matrices are
+    made isometries: no xi mends what lies outside the group, and the first defect would hide what the round gained.
     """
     relations = _distinct_relations(transition)
     if not len(relations):
         return isometry
-    solve = _least_squares(_linearised(geometry, relations, isometry))
-    best, defect = isometry, _defect(isometry, relations)
+    best = _moved(geometry, isometry, np.zeros(3 * (len(isometry) // 2)))
+    solve, defect = _least_squares(_linearised(geometry, relations, best)), _defect(best, relations)
     for _ in range(_ROUNDS):
         trial = _moved(geometry, best, solve(-_residual(best, relations)))
         new = _defect(trial, relations)

@@ -125,8 +125,8 @@ def _hole(mesh: Polyhedron, size: Floats) -> int:
     """The largest face; of equals the one whose centre comes first, so that the order of the faces does not matter."""
     largest = np.flatnonzero(size >= (1 - _EQUAL) * size.max())
     centre = mesh.vertices[mesh.triangles[largest]].mean(axis=1)
-    cells = np.round(centre / (_EQUAL * (mesh.diagonal or 1.0)))
-    return int(largest[np.lexsort(cells.T[::-1])[0]])
+    squares = np.round(centre / (_EQUAL * (mesh.diagonal or 1.0)))
+    return int(largest[np.lexsort(squares.T[::-1])[0]])
 
 
 def _planar(mesh: Polyhedron, name: str, hole: int) -> tuple[NDArray[np.complex128], Floats]:
