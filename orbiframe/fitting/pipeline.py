@@ -17,6 +17,7 @@ from orbiframe.components.registry import Registry
 from orbiframe.errors import FitError, MapError, TopologyError
 from orbiframe.files import gate
 from orbiframe.fitting.config import Config
+from orbiframe.fitting.limits import require_density
 from orbiframe.fitting.report import Deviation, report
 from orbiframe.functions.samples import Samples, coordinate_samples
 from orbiframe.groups.marked_group import MarkedGroup
@@ -86,6 +87,7 @@ def fit(mesh: str | Path | Polyhedron, config: Config, registry: Registry, progr
     config = config.checked(registry)
     polyhedron = mesh if isinstance(mesh, Polyhedron) else stages("read", _read, Path(mesh), config, registry)
     surface_type = stages("topology", require_closed_surface, polyhedron)
+    require_density(config.output.refine, int((polyhedron.face_sizes - 2).sum()), config.places)
     unit, origin, scale = _normalised(oriented(without_unused_vertices(polyhedron)))
     triangles = stages("triangles", triangulated, unit)
     fitted = _Approximation(unit, triangles, surface_type, config, registry, stages).fitted()
