@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from orbiframe.meshes.polyhedron import Polyhedron
 
 _BAR = 20
-# A torus of 2 n^2 triangles, large enough for all that is done only to large meshes.
+# Of a torus of 2 n^2 triangles: large enough for all that is done only to large meshes.
 _LARGE = 419
 
 
@@ -85,7 +85,7 @@ def _sample_folder(registry: Registry) -> Iterator[None]:
     from orbiframe.files import gate
     from orbiframe.testing.polyhedra import reference_polyhedra
 
-    samples = {**reference_polyhedra(), "large": _large_torus()}
+    samples = {**reference_polyhedra(), "large": _large_torus(_LARGE)}
     with tempfile.TemporaryDirectory() as folder:
         for name, polyhedron in samples.items():
             gate.write(Path(folder) / f"{name.replace(' ', '_').lower()}.off", polyhedron, registry)
@@ -97,12 +97,11 @@ def _sample_folder(registry: Registry) -> Iterator[None]:
             os.chdir(before)
 
 
-def _large_torus() -> Polyhedron:
+def _large_torus(n: int) -> Polyhedron:
     import numpy as np
 
     from orbiframe.meshes.polyhedron import Polyhedron
 
-    n = _LARGE
     here = np.arange(n * n).reshape(n, n)
     right, up, across = np.roll(here, -1, 1), np.roll(here, -1, 0), np.roll(here, (-1, -1), (0, 1))
     faces = np.stack([here, up, across, here, across, right], axis=-1).reshape(-1, 3)
