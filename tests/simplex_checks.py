@@ -115,7 +115,8 @@ def _along(basis: SimplexSplines, coefficients: np.ndarray, face: int, t: np.nda
     x = geometry.exp(start, t[:, None] * direction)
     jets = basis.jets(Points(np.full(len(x), domain.patch[face]), x), coefficients, order)[..., 0]
     ahead = geometry.log(x, geometry.exp(start, (t + 0.1)[:, None] * direction))
-    speed = geometry.inner(np.swapaxes(geometry.frame(x), 1, 2), ahead[:, None]) / geometry.norm(ahead)[:, None]
+    frame = np.swapaxes(geometry.frame(x), 1, 2)
+    speed = geometry.inner(x[:, None], frame, ahead[:, None]) / geometry.norm(x, ahead)[:, None]
     a, b = speed.T
 
     def second(first: int) -> np.ndarray:

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TextIO
 
+from orbiframe.cli.speech import say
 from orbiframe.cli.status_line import StatusLine
 from orbiframe.compiled import compilation
 
@@ -19,9 +20,11 @@ _PATIENCE = 1.5
 _lines: dict[int, StatusLine] = {}
 
 
-def status_line(stream: TextIO) -> StatusLine | None:
+def status_line(stream: TextIO | None) -> StatusLine | None:
     """The status line of a stream, the same for all who write there; None where it is no terminal."""
-    return _lines.setdefault(id(stream), StatusLine(stream)) if stream.isatty() else None
+    if stream is None or not stream.isatty():
+        return None
+    return _lines.setdefault(id(stream), StatusLine(stream))
 
 
 class Progress:
@@ -47,9 +50,9 @@ class CompilationProgress:
     On a terminal behind the text of the status line, elsewhere on lines of its own.
     """
 
-    def __init__(self, stream: TextIO) -> None:
+    def __init__(self, stream: TextIO | None) -> None:
         self.count = 0
-        self._stream, self._line, self._done = stream, status_line(stream), threading.Event()
+        self._line, self._done = status_line(stream), threading.Event()
 
     def begins(self, name: str) -> None:  # noqa: ARG002
         """Hear that a function is about to be compiled."""
@@ -81,7 +84,7 @@ class CompilationProgress:
         if self._line:
             self._line.remark(text)
         else:
-            print(f"orbiframe: {text}", file=self._stream, flush=True)
+            say(text)
 
 
 @contextmanager

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from contextlib import suppress
 from typing import TextIO
 
 
@@ -26,10 +27,14 @@ class StatusLine:
         """Write a last text, and go to the next line."""
         self.show(text)
         self._text, self._width = "", 0
-        print(file=self._stream, flush=True)
+        self._print("\n")
 
     def _write(self) -> None:
         room = shutil.get_terminal_size().columns - 1
         line = " ".join(filter(None, [self._text, self._remark]))[:room]
-        print(f"\r{line:<{min(self._width, room)}}", end="" if line else "\r", file=self._stream, flush=True)
+        self._print(f"\r{line:<{min(self._width, room)}}" + ("" if line else "\r"))
         self._width = len(line)
+
+    def _print(self, text: str) -> None:
+        with suppress(OSError, ValueError):  # a terminal that has gone costs no result
+            print(text, end="", file=self._stream, flush=True)

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from orbiframe.cli.progress import status_line
+from orbiframe.cli.speech import say
 from orbiframe.compiled import compilation
 from orbiframe.components.registry import Registry
 from orbiframe.errors import OrbiframeError
@@ -64,7 +65,7 @@ def _say(number: int, total: int, text: str) -> None:
         bar = f"[{'=' * filled}{' ' * (_BAR - filled)}] {number} of {total}: {text}"
         line.leave(bar) if number == total else line.show(bar)
     elif number < total:
-        print(f"orbiframe: {number + 1} of {total}: {text}", file=sys.stderr, flush=True)
+        say(f"{number + 1} of {total}: {text}")
 
 
 def _succeeds(command: str, registry: Registry) -> bool:
@@ -75,7 +76,7 @@ def _succeeds(command: str, registry: Registry) -> bool:
         try:
             return int(args.run(args, registry)) == 0
         except OrbiframeError as error:
-            print(f"orbiframe: {command}: {error}", file=sys.stderr)
+            say(f"{command}: {error}")
             return False
 
 

@@ -7,6 +7,7 @@ from .basis import (
     lifted as lifted,
 )
 from .fitter import Fitter as Fitter
+from .foot_points import foot_points as foot_points, foot_step as foot_step, moved as moved
 from .jet_quotient import divide_jets as divide_jets
 from .orbit_sum_basis import OrbitSumBasis as OrbitSumBasis
 from .samples import Samples as Samples, coordinate_samples as coordinate_samples

@@ -16,6 +16,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
+# Meshes without thousands of equal edges round a vertex are refined in 5 to 35 rounds.
+_PATIENCE = 50
+
 
 @dataclass(frozen=True, eq=False)
 class Bisection:
@@ -80,6 +83,15 @@ class Bisection:
         fine[self.child[leaf]] = node[leaf]
         return fine
 
+    def origins(self) -> tuple[Ints, Floats]:
+        """A coarse triangle (V,) that holds each vertex of the fine mesh, and barycentric coordinates in it (V, 3)."""
+        count = self.coarse.face_count
+        corners = np.zeros((count, 3, 4))
+        corners[:, :, 0], corners[:, :, 1:] = np.arange(count)[:, None], np.eye(3)
+        fine = self.spread(corners).reshape(-1, 4)
+        first = np.unique(self.polyhedron.tail, return_index=True)[1]
+        return fine[first, 0].round().astype(np.intp), fine[first, 1:]
+
     def _levels(self) -> list[Ints]:
         """The nodes of the forest that are halved, those of each depth together, roots first."""
         levels = []
@@ -99,17 +111,20 @@ def bisected(polyhedron: Polyhedron, longest: float, simplicial: bool = False) -
 
     An edge is halved when it is the longest of both its triangles, so that long thin triangles become rounder and no
     angle falls below half the least one of the mesh (Rivara 1984, 1997: longest-edge propagation). Deterministic:
-    of equal edges the one with the larger index is halved first. A face that meets itself along an edge is halved
-    across its third side first. Raises TopologyError for an open mesh, or a length
-    that is not positive.
+    of equal edges the one with the larger index is halved first. Where that takes many rounds, as round a vertex of
+    thousands of equal edges, edges count as equal that differ by less than a fifth, and a fixed mixture of the indices
+    decides. A face that meets itself along an edge is halved across its third side first. Raises TopologyError for an
+    open mesh, or a length that is not positive.
     """
     if not longest > 0:
         raise TopologyError(f"edges no longer than {longest} were asked for; the length must be positive")
     if (polyhedron.twin < 0).any():
         raise TopologyError("only a closed mesh is refined; `orbiframe info` lists its open edges")
     state = _State(polyhedron, simplicial)
-    while len(edges := state.edges_to_halve(longest)):
+    rounds = 0
+    while len(edges := state.edges_to_halve(longest, rounds > _PATIENCE)):
         state.halve(edges)
+        rounds += 1
     return state.result(polyhedron)
 
 
@@ -139,6 +154,14 @@ def _triangles_made(sides: Floats, areas: Floats, longest: float) -> float:
     return float((3**slender * 4 ** (halvings - slender)).sum())
 
 
+def _mixed(index: Ints) -> NDArray[np.uint64]:
+    """Numbers in an order that has nothing to do with theirs (the finaliser of splitmix64)."""
+    z = index.astype(np.uint64)
+    for shift, factor in ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB)):
+        z = (z ^ (z >> np.uint64(shift))) * np.uint64(factor)
+    return z ^ (z >> np.uint64(31))
+
+
 class _State:
     """The mesh while it is being refined: vertices, triangles, twins, and the forest."""
 
@@ -151,8 +174,11 @@ class _State:
         self.side = np.full(mesh.face_count, -1, dtype=np.intp)
         self.child = np.arange(mesh.face_count)
 
-    def edges_to_halve(self, longest: float) -> Ints:
-        """One halfedge of each edge that must be halved and comes first in both its triangles."""
+    def edges_to_halve(self, longest: float, roughly: bool = False) -> Ints:
+        """One halfedge of each edge that must be halved and comes first in both its triangles.
+
+        roughly: by steps of the length and in mixed order, so that many come first at once.
+        """
         head = np.roll(self.triangles, -1, axis=1)
         length = np.linalg.norm(self.vertices[head] - self.vertices[self.triangles], axis=2).ravel()
         index = np.arange(len(length))
@@ -170,7 +196,8 @@ class _State:
         loop = head.ravel() == self.triangles.ravel()
         urgency = np.where(folded, -1, 4 * first + 2 * (doubled & loop) + doubled)
         rank = np.empty(len(length), dtype=np.intp)
-        rank[np.lexsort((edge, length, urgency))] = index
+        size, order = (np.rint(4 * np.log2(np.maximum(length, 1e-300))), _mixed(edge)) if roughly else (length, edge)
+        rank[np.lexsort((edge, order, size, urgency))] = index
         rank = np.maximum(rank, rank[self.twin])
         top = np.zeros(len(length), dtype=np.bool_)
         top[3 * np.arange(len(self.triangles)) + rank.reshape(-1, 3).argmax(axis=1)] = True

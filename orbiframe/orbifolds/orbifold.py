@@ -9,7 +9,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from orbiframe.orbifolds.atlas import Atlas
+from orbiframe.orbifolds.atlas import Atlas, Points
 from orbiframe.planes.geometry import Geometry
 
 Floats = NDArray[np.float64]
@@ -80,6 +80,25 @@ class Orbifold:
             levels.append(level.take(self.geometry.distance(origin, level.isometry[:, :, 0]) <= reach[level.base]))
         found = Copies(*(np.concatenate([getattr(x, name) for x in levels]) for name in ("base", "patch", "isometry")))
         return found.take(np.argsort(found.base, kind="stable"))
+
+    def settled(self, points: Points) -> Points:
+        """The same points of X/H, each in the frame of a patch to whose origin no neighbouring one is nearer.
+
+        Points that have been moved on X and left their patch walk from patch to patch, downhill.
+        """
+        patch, x = np.array(points.patch, dtype=np.intp), np.array(points.x, dtype=np.float64)
+        far = np.flatnonzero(self.geometry.distance(self.geometry.origin, x) > self.atlas.radius[patch])
+        while len(far):
+            parent, step = self.steps(patch[far])
+            place = self.geometry.act(self.atlas.isometry[self.atlas.inverse[step]], x[far[parent]])
+            away = self.geometry.distance(self.geometry.origin, place)
+            order = np.lexsort((away, parent))
+            best = order[np.unique(parent[order], return_index=True)[1]]
+            far = far[parent[best]]
+            nearer = away[best] < self.geometry.distance(self.geometry.origin, x[far]) * (1 - 1e-9)
+            far, best = far[nearer], best[nearer]
+            patch[far], x[far] = self.atlas.head[step[best]], self.geometry.settle(place[best])
+        return Points(patch, x)
 
     def _walk(self, patches: Ints, limit: Floats) -> Iterator[Copies]:
         """Breadth first, level by level: a neighbour lies in the level itself, the one before or the next."""

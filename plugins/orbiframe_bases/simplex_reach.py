@@ -21,12 +21,12 @@ _NARROW, _SAME_PLACE = 1e-12, 1e-6
 class Reach(NamedTuple):
     """For every triangle its candidates first[f] to first[f + 1] - 1: sets of knots that may reach it.
 
-    first: (F + 1,); element: (c,), the number of the set; isometry: (c, 3, 3), from the frame of the triangle to the
+    first: (F + 1,); knot_set: (c,), the number of the set; isometry: (c, 3, 3), from the frame of the triangle to the
     frame that the knots are in.
     """
 
     first: Ints
-    element: Ints
+    knot_set: Ints
     isometry: Floats
 
 
@@ -69,19 +69,19 @@ def reach(locator: Locator, face: Ints, knots: Floats, bounds: Floats) -> Reach:
     found = [level]
     before = level
     while len(level[0]):
-        element = np.repeat(level[0], 3)
+        knot_set = np.repeat(level[0], 3)
         halfedge = (3 * level[1][:, None] + np.arange(3)).ravel()
         beyond = domain.twin[halfedge] // 3
         isometry = np.repeat(level[2], 3, axis=0) @ domain.gluing[halfedge]
-        overlap = _overlap(domain, beyond, isometry, knots, bounds, element)
-        fresh = (element[overlap], beyond[overlap], isometry[overlap])
+        overlap = _overlap(domain, beyond, isometry, knots, bounds, knot_set)
+        fresh = (knot_set[overlap], beyond[overlap], isometry[overlap])
         new = _unseen(domain, (before, level), fresh)
         before, level = level, (fresh[0][new], fresh[1][new], fresh[2][new])
         found.append(level)
-    element, triangle, isometry = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    order = np.lexsort((element, triangle))
+    knot_set, triangle, isometry = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    order = np.lexsort((knot_set, triangle))
     first = np.searchsorted(triangle[order], np.arange(domain.face_count + 1))
-    return Reach(first, element[order], np.ascontiguousarray(isometry[order]))
+    return Reach(first, knot_set[order], np.ascontiguousarray(isometry[order]))
 
 
 def _starts(locator: Locator, face: Ints, knots: Floats) -> tuple[Ints, Ints, Floats]:
@@ -95,17 +95,17 @@ def _starts(locator: Locator, face: Ints, knots: Floats) -> tuple[Ints, Ints, Fl
 
 
 def _overlap(
-    domain: GeodesicTriangulation, face: Ints, isometry: Floats, knots: Floats, bounds: Floats, element: Ints
+    domain: GeodesicTriangulation, face: Ints, isometry: Floats, knots: Floats, bounds: Floats, knot_set: Ints
 ) -> NDArray[np.bool_]:
     """Whether triangles, moved by isometries, overlap the hulls of sets of knots: no side of one has the other beyond.
 
     Two convex sets without a common inner point are on two sides of a side of one of them.
     """
     corners = np.einsum("nij,ncj->nci", isometry, domain.corners[face])
-    outside = (np.einsum("nbi,nci->nbc", bounds[element], corners).max(axis=2) <= _NARROW).any(axis=1)
+    outside = (np.einsum("nbi,nci->nbc", bounds[knot_set], corners).max(axis=2) <= _NARROW).any(axis=1)
     sides = np.cross(np.roll(corners, -1, axis=1), np.roll(corners, -2, axis=1))
     sides *= np.sign(np.linalg.det(corners))[:, None, None]
-    beyond = (np.einsum("nsi,nki->nsk", sides, knots[element]).max(axis=2) <= _NARROW).any(axis=1)
+    beyond = (np.einsum("nsi,nki->nsk", sides, knots[knot_set]).max(axis=2) <= _NARROW).any(axis=1)
     return np.asarray(~outside & ~beyond)
 
 

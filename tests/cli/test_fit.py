@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from orbiframe import MapError
 from orbiframe.cli.report import json_text, summary, write_report
 from orbiframe.fitting import pipeline
 
@@ -56,6 +57,23 @@ def test_a_configuration_file_and_overrides(orbiframe, cube, tmp_path):
     ran = orbiframe("fit", cube, "-o", tmp_path / "a.ply", "--config", config, "--set", "basis.size=40", "--json")
     report = json.loads(ran.out)
     assert (report["fit"]["size"], report["output"]["faces"]) == (40, 12 * 4)
+
+
+@pytest.mark.usefixtures("_no_fit")
+def test_options_with_a_name_of_their_own_win_over_set(orbiframe, cube, tmp_path, monkeypatch):
+    """Whatever their order on the command line is."""
+    asked = []
+
+    def fit(mesh, config, *rest):
+        asked.append((config.basis.name, config.basis.options["size"], config.output.refine))
+        raise MapError("enough")
+
+    monkeypatch.setattr(pipeline, "fit", fit)
+    given = ["--set", "basis.size=300", "--set", "output.refine=7", "--set", "basis.name=gaussian"]
+    named = ["--size", "40", "--refine", "2", "--basis", "ps2"]
+    for arguments in (given + named, named + given):
+        assert orbiframe("fit", cube, "-o", tmp_path / "a.ply", *arguments).status == 1
+    assert asked == [("ps2", 40, 2)] * 2
 
 
 def test_a_plugin_file_takes_part(orbiframe, small, tmp_path):

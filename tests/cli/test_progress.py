@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import sys
 import time
 
 import pytest
@@ -65,7 +66,8 @@ def wait_for(said) -> None:
 
 def test_compilation_is_told_at_once_and_again_while_it_goes_on(underway, monkeypatch):
     monkeypatch.setattr(module, "_PATIENCE", 0.01)
-    progress = CompilationProgress(stream := io.StringIO())
+    monkeypatch.setattr(sys, "stderr", stream := io.StringIO())
+    progress = CompilationProgress(stream)
     with compilation.heard(progress):
         underway("one")
         assert stream.getvalue() == "orbiframe: compiling, once on this machine …\n"
@@ -76,7 +78,8 @@ def test_compilation_is_told_at_once_and_again_while_it_goes_on(underway, monkey
 
 def test_nothing_is_said_while_nothing_is_compiled(monkeypatch):
     monkeypatch.setattr(module, "_PATIENCE", 0.01)
-    progress = CompilationProgress(stream := io.StringIO())
+    monkeypatch.setattr(sys, "stderr", stream := io.StringIO())
+    progress = CompilationProgress(stream)
     with compilation.heard(progress), compilation.ended():
         compilation.begins("one")
     said = stream.getvalue()

@@ -7,7 +7,7 @@ import pytest
 from lifted_sites import group_of, random_sites
 from reference_surfaces import ALL, triangulated
 
-from orbiframe.delaunay.point_walk import locate
+from orbiframe.delaunay.point_walk import find
 from orbiframe.delaunay.polygon_fan import polygon_triangulation
 from orbiframe.delaunay.site_triangulation import delaunay
 from orbiframe.delaunay.sites import lloyd, poisson_disc, uniform_points
@@ -63,7 +63,7 @@ def test_the_cells_of_middle_and_corner_of_the_octagon_are_equal():
 def test_uniform_points_fall_into_triangles_by_area(word):
     t, start = scattered(word, 12, 3), polygon_triangulation(group_of(word))
     points = uniform_points(start, 6000, seed=4)
-    count = np.bincount(locate(t, points).face, minlength=t.face_count)
+    count = np.bincount(find(t, points).face, minlength=t.face_count)
     expected = 6000 * t.areas / t.areas.sum()
     assert (np.abs(count - expected) < 5 * np.sqrt(expected) + 1).all()
     again = uniform_points(start, 6000, seed=4)
