@@ -11,3 +11,4 @@ from .fitter import Fitter as Fitter
 from .jet_quotient import divide_jets as divide_jets
 from .orbit_sum_basis import OrbitSumBasis as OrbitSumBasis
 from .samples import Samples as Samples, coordinate_samples as coordinate_samples
+from .smooth_samples import semi_smooth_samples as semi_smooth_samples, vertex_samples as vertex_samples
