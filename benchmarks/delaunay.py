@@ -14,7 +14,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from lifted_sites import group_of
 from scipy.spatial import Delaunay
 
-from orbiframe.delaunay import delaunay, polygon_fan as cell_triangulation, uniform_points
+from orbiframe.delaunay import delaunay, polygon_fan as polygon_triangulation, uniform_points
 
 SURFACES = {"sphere": "aA", "torus": "abAB", "Klein bottle": "abaB", "genus 2": "abcdABCD", "3 crosscaps": "aabbcc"}
 
@@ -33,7 +33,7 @@ def main() -> None:
     """One line for every surface and number of points."""
     print("surface        points   µs a point   scipy, plane   ratio")
     for name, word in SURFACES.items():
-        start = cell_triangulation(group_of(word))
+        start = polygon_triangulation(group_of(word))
         delaunay(start, uniform_points(start, 100))
         for count in (1_000, 10_000, 100_000):
             sites, plane = uniform_points(start, count), np.random.default_rng(0).random((count, 2))

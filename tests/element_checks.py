@@ -50,15 +50,15 @@ def condition(basis: ElementBasis) -> float:
 def residual_on_the_sphere(basis: ElementBasis, degree: int) -> float:
     """How far homogeneous polynomials on R^3 of this degree are from being numerators on the whole sphere."""
     d = basis.domain
-    corners = d.placement[:, None] @ np.swapaxes(basis.cells, 2, 3)
+    corners = d.placement[:, None] @ np.swapaxes(basis.micro_triangles, 2, 3)
     wanted = symmetric_power(corners, degree).reshape(-1, coefficient_count(degree))
     return _residual(basis.matrix.toarray(), wanted)
 
 
 def residual_on_one_triangle(basis: ElementBasis) -> float:
     """How far all polynomials of the degree are from being the numerators of some function on one triangle."""
-    rows = basis.matrix[: basis.cells.shape[1] * coefficient_count(basis.degree)].toarray()
-    cells = np.swapaxes(basis.cells[0], 1, 2)
+    rows = basis.matrix[: basis.micro_triangles.shape[1] * coefficient_count(basis.degree)].toarray()
+    cells = np.swapaxes(basis.micro_triangles[0], 1, 2)
     return _residual(rows, symmetric_power(cells, basis.degree).reshape(len(rows), -1))
 
 

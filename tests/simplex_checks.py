@@ -7,6 +7,8 @@ from itertools import permutations
 
 import mpmath
 import numpy as np
+from numba import njit
+from orbiframe_bases.simplex_kernels import _beside, _run
 from orbiframe_bases.simplex_splines import SimplexSplines
 
 from orbiframe import Points
@@ -58,7 +60,7 @@ def reproduction_error(basis: SimplexSplines, arguments: Arguments, rng: np.rand
     The polynomial is one of the frame of a triangle; the functions that reach that triangle are seen from there. Where
     one function reaches it through two lifts it has no one coefficient, and the triangle is left out.
     """
-    domain, elements = basis.domain, basis.elements
+    domain, sets = basis.domain, basis.knot_sets
     first, element, isometry = basis._reach
     back = domain.geometry.inverse(isometry)
     errors = []
@@ -66,10 +68,10 @@ def reproduction_error(basis: SimplexSplines, arguments: Arguments, rng: np.rand
         forms = rng.normal(size=(basis.degree, 3))
         coefficients, clear = np.full(basis.size, np.nan), True
         for c in range(first[face], first[face + 1]):
-            knots = elements.knots[element[c]] @ back[c].T
-            for o in range(elements.column.shape[1]):
-                column = elements.column[element[c], o]
-                if elements.factor[element[c], o] == 0:
+            knots = sets.knots[element[c]] @ back[c].T
+            for o in range(sets.column.shape[1]):
+                column = sets.column[element[c], o]
+                if sets.factor[element[c], o] == 0:
                     continue
                 value = polarised(forms, knots[arguments(element[c], o)])
                 clear &= bool(np.isnan(coefficients[column]) or abs(coefficients[column] - value) < 1e-6)
@@ -113,7 +115,8 @@ def _along(basis: SimplexSplines, coefficients: np.ndarray, face: int, t: np.nda
     x = geometry.exp(start, t[:, None] * direction)
     jets = basis.jets(Points(np.full(len(x), domain.patch[face]), x), coefficients, order)[..., 0]
     ahead = geometry.log(x, geometry.exp(start, (t + 0.1)[:, None] * direction))
-    speed = geometry.inner(np.swapaxes(geometry.frame(x), 1, 2), ahead[:, None]) / geometry.norm(ahead)[:, None]
+    frame = np.swapaxes(geometry.frame(x), 1, 2)
+    speed = geometry.inner(x[:, None], frame, ahead[:, None]) / geometry.norm(x, ahead)[:, None]
     a, b = speed.T
 
     def second(first: int) -> np.ndarray:
@@ -122,3 +125,24 @@ def _along(basis: SimplexSplines, coefficients: np.ndarray, face: int, t: np.nda
     if order < 2:
         return np.asarray(jets[0] if order == 0 else a * jets[1] + b * jets[2])
     return second(3) if order == 2 else a * second(6) + b * second(9)
+
+
+@njit
+def simplex_splines(program, rows, height, columns, values):
+    """The jets in R^3 of the outputs of a program for one set of knots: values (n, outputs, 1, 3, 6 or 10).
+
+    columns: (n, 3, 3), points and two directions; rows and heights of the one set.
+    """
+    start, child, orders, outputs = program
+    entries = values.shape[2]
+    jets, live = np.empty((len(orders), entries)), np.empty(len(orders), dtype=np.bool_)
+    here = np.empty((3, 4))
+    for n in range(len(columns)):
+        for i in range(3):
+            for j in range(3):
+                here[i, j] = columns[n, i, j]
+        _beside(here)
+        _run((start, child, orders), rows, height, here, entries, jets, live)
+        for o in range(len(outputs)):
+            for e in range(entries):
+                values[n, o, e] = jets[outputs[o], e] if live[outputs[o]] else 0.0

@@ -56,7 +56,7 @@ def glued(orbifold: Orbifold, corners: np.ndarray, group: np.ndarray) -> Geodesi
         np.einsum("fij,fcj->fci", back, corners),
         twin,
         same,
-        back[face] @ gluing @ placement[twin // 3],
+        geometry.nearest_isometry(back[face] @ gluing @ placement[twin // 3]),
         np.zeros(len(corners), dtype=np.intp),
         placement,
     )
@@ -122,9 +122,9 @@ def quadrature(basis: ElementBasis, count: int) -> tuple[Points, np.ndarray]:
     """
     curvature = basis.domain.geometry.curvature
     barycentric, weights = triangle_rule(count)
-    flat = barycentric @ basis.cells
+    flat = barycentric @ basis.micro_triangles
     rho = np.sqrt((flat**2 * [1, curvature, curvature]).sum(axis=-1))
-    area = np.abs(np.linalg.det(basis.cells))[..., None] * weights / 2 / rho**3
+    area = np.abs(np.linalg.det(basis.micro_triangles))[..., None] * weights / 2 / rho**3
     face = np.broadcast_to(np.arange(len(flat))[:, None, None], rho.shape).ravel()
     x = np.einsum("nij,nj->ni", basis.domain.placement[face], (flat / rho[..., None]).reshape(-1, 3))
     return Points(basis.domain.patch[face], x), area.ravel()
@@ -167,10 +167,10 @@ def jumps(basis: ElementBasis, coefficients: np.ndarray, order: int, across: str
 def both_sides(basis: ElementBasis) -> Sides:
     """Some points of every edge of every micro triangle, with the micro triangle beyond."""
     d, geometry = basis.domain, basis.domain.geometry
-    faces, count = basis.cells.shape[:2]
-    opposite = np.concatenate([np.roll(basis.cells, 1, axis=2)] * len(_SHARES), axis=2)
-    following = np.roll(basis.cells, -1, axis=2)
-    on_edge = np.concatenate([(1 - t) * basis.cells + t * following for t in _SHARES], axis=2)
+    faces, count = basis.micro_triangles.shape[:2]
+    opposite = np.concatenate([np.roll(basis.micro_triangles, 1, axis=2)] * len(_SHARES), axis=2)
+    following = np.roll(basis.micro_triangles, -1, axis=2)
+    on_edge = np.concatenate([(1 - t) * basis.micro_triangles + t * following for t in _SHARES], axis=2)
     beyond = (on_edge + _ACROSS * (on_edge - opposite)).reshape(-1, 3)
     frame = geometry.carry(geometry.project(on_edge.reshape(-1, 3)))
     face, cell = (a.ravel() for a in np.indices((faces, count, on_edge.shape[2]))[:2])
@@ -179,7 +179,7 @@ def both_sides(basis: ElementBasis) -> Sides:
     crossed = height.min(axis=1) < -1e-9
     step = np.where(crossed[:, None, None], geometry.inverse(d.gluing[edge]), np.eye(3))
     other = np.where(crossed, d.twin[edge] // 3, face)
-    inverse = np.linalg.inv(np.swapaxes(basis.cells, 2, 3))[other]
+    inverse = np.linalg.inv(np.swapaxes(basis.micro_triangles, 2, 3))[other]
     heights = np.einsum("nmij,njk,nk->nmi", inverse, step, beyond).min(axis=2)
     assert (heights.max(axis=1) > -1e-9).all(), "a point beyond an edge lies in no micro triangle"
     return Sides(face, cell, frame, other, heights.argmax(axis=1), step @ frame, crossed)
@@ -189,7 +189,7 @@ def _derivatives(
     basis: ElementBasis, coefficients: np.ndarray, order: int, face: np.ndarray, cell: np.ndarray, frame: np.ndarray
 ) -> np.ndarray:
     """B(x, ..., x, e1, ..., e2, ...) with `order` tangent arguments, up to a factor the derivatives: (n, order + 1)."""
-    coordinates = np.linalg.inv(np.swapaxes(basis.cells[face, cell], 1, 2)) @ frame
+    coordinates = np.linalg.inv(np.swapaxes(basis.micro_triangles[face, cell], 1, 2)) @ frame
     form = basis.net(coefficients[:, None])[face, cell]
     for _ in range(basis.degree - order):
         form = polar(form, coordinates[:, :, 0])

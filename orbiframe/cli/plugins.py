@@ -72,7 +72,7 @@ def _table(shown: list[tuple[Component, str]], options: bool) -> Iterator[str]:
     rows = [(c.kind, c.name, plugin, c.summary) for c, plugin in shown]
     widths = [max((len(row[i]) for row in rows), default=0) + 2 for i in range(3)]
     for row, (component, _) in zip(rows, shown, strict=True):
-        yield "".join(cell.ljust(width) for cell, width in zip(row, [*widths, 0], strict=True))
+        yield "".join(entry.ljust(width) for entry, width in zip(row, [*widths, 0], strict=True))
         if options:
             yield from _option_lines(component)
 

@@ -1,6 +1,6 @@
 """The public names of orbiframe.delaunay, each with the module it lives in."""
 
-from .polygon_fan import cell_triangulation as cell_triangulation
+from .polygon_fan import polygon_triangulation as polygon_triangulation
 from .site_triangulation import (
     SiteTriangulation as SiteTriangulation,
     delaunay as delaunay,
@@ -13,4 +13,4 @@ from .sites import (
     vertex_points as vertex_points,
 )
 from .spline_domain import domain_for as domain_for
-from .voronoi import cell_areas as cell_areas, circumcentres as circumcentres, circumradii as circumradii
+from .voronoi import circumcentres as circumcentres, circumradii as circumradii, region_areas as region_areas

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from orbiframe.compiled.decorator import compiled
+from orbiframe.compiled.matrices import copy, multiply
 from orbiframe.delaunay.lawson_flips import chord, versine
-from orbiframe.delaunay.triangle_arrays import bare, carry, copy, invert, move, multiply
+from orbiframe.delaunay.triangle_arrays import carry, invert, move
 from orbiframe.orbifolds.atlas import Atlas
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
@@ -101,7 +102,7 @@ def _attached(atlas: Atlas, patch: Ints, placement: Floats) -> tuple[Ints, Float
     return patch, placement
 
 
-@bare
+@compiled(arrays=False)
 def _flag(curvature, p, t, out):  # type: ignore[no-untyped-def]
     """out = the isometry from the origin and the first direction to the point p and the direction of t there."""
     k = curvature
@@ -118,7 +119,7 @@ def _flag(curvature, p, t, out):  # type: ignore[no-untyped-def]
     out[1, 2], out[2, 2] = p[2] * a - p[0] * c, p[0] * b - p[1] * a
 
 
-@bare
+@compiled(arrays=False)
 def _edge_flag(curvature, p, q, out):  # type: ignore[no-untyped-def]
     """out = the flag at p in the direction to q."""
     d = chord(curvature, p, q)
@@ -126,7 +127,7 @@ def _edge_flag(curvature, p, q, out):  # type: ignore[no-untyped-def]
     _flag(curvature, p, (d[0] + bend * p[0], d[1] + bend * p[1], d[2] + bend * p[2]), out)
 
 
-@njit(cache=True)
+@compiled
 def _glue(curvature, corners, twin, same, gluing):  # type: ignore[no-untyped-def]
     here, there, back = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
     for e in range(len(twin)):
@@ -147,7 +148,7 @@ def _glue(curvature, corners, twin, same, gluing):  # type: ignore[no-untyped-de
         multiply(here, back, gluing[e])
 
 
-@njit(cache=True)
+@compiled
 def _centre(curvature, corners, placement):  # type: ignore[no-untyped-def]
     there, back, moved = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
     for f in range(len(corners)):
@@ -163,7 +164,7 @@ def _centre(curvature, corners, placement):  # type: ignore[no-untyped-def]
         _straighten(curvature, placement[f], moved)
 
 
-@bare
+@compiled(arrays=False)
 def _straighten(curvature, g, spare):  # type: ignore[no-untyped-def]
     """Put an isometry that has drifted back to one with nearly the same image of the origin and first direction."""
     p = (g[0, 0], g[1, 0], g[2, 0])

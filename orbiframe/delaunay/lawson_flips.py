@@ -8,13 +8,14 @@ triangulations on hyperbolic surfaces (2020).
 
 from __future__ import annotations
 
-from orbiframe.delaunay.triangle_arrays import after, bare, before, corner, flip, move
+from orbiframe.compiled.decorator import compiled
+from orbiframe.delaunay.triangle_arrays import after, before, corner, flip, move
 
 # A site must lie this far inside a circle, relative to the terms of the test, to count: rounding must not decide.
 TOLERANCE = 1e-10
 
 
-@bare
+@compiled(arrays=False)
 def chord(curvature, x, y):  # type: ignore[no-untyped-def]
     """y - x, with y0 - x0 from the differences of (x1, x2) where these determine x0."""
     u, v = y[1] - x[1], y[2] - x[2]
@@ -23,25 +24,25 @@ def chord(curvature, x, y):  # type: ignore[no-untyped-def]
     return -curvature * (u * (x[1] + y[1]) + v * (x[2] + y[2])) / (x[0] + y[0]), u, v
 
 
-@bare
+@compiled(arrays=False)
 def versine(curvature, d):  # type: ignore[no-untyped-def]
     """1 - cos, half the square or cosh - 1 of the distance of two points near the origin, from their chord d."""
     return (d[1] * d[1] + d[2] * d[2] + curvature * d[0] * d[0]) / 2
 
 
-@bare
+@compiled(arrays=False)
 def volume(x, u, v):  # type: ignore[no-untyped-def]
     """det(x, u, v); positive for chords u, v from x to the other corners of a counterclockwise triangle."""
     return x[0] * (u[1] * v[2] - u[2] * v[1]) + x[1] * (u[2] * v[0] - u[0] * v[2]) + x[2] * (u[0] * v[1] - u[1] * v[0])
 
 
-@bare
+@compiled(arrays=False)
 def turn(curvature, x, y, z):  # type: ignore[no-untyped-def]
     """det(x, y, z), positive for a counterclockwise triangle, without cancellation."""
     return volume(x, chord(curvature, x, y), chord(curvature, x, z))
 
 
-@bare
+@compiled(arrays=False)
 def outside(curvature, a, b, c, d):  # type: ignore[no-untyped-def]
     """How far d lies outside the circle through a, b, c (counterclockwise), and the size of the terms.
 
@@ -55,71 +56,71 @@ def outside(curvature, a, b, c, d):  # type: ignore[no-untyped-def]
     return first + second + third, abs(first) + abs(second) + abs(third)
 
 
-@bare
-def wants_flip(cells, e):  # type: ignore[no-untyped-def]
+@compiled(arrays=False)
+def wants_flip(triangles, e):  # type: ignore[no-untyped-def]
     """Whether the apex across an edge lies inside the circle of its triangle, in a strictly convex quadrilateral."""
-    t = cells.twin[e]
+    t = triangles.twin[e]
     if t // 3 == e // 3:
         return False
-    k = cells.curvature
-    a, b, c = corner(cells, e), corner(cells, after(e)), corner(cells, before(e))
-    d = move(k, cells.gluing[e], corner(cells, before(t)))
+    k = triangles.curvature
+    a, b, c = corner(triangles, e), corner(triangles, after(e)), corner(triangles, before(e))
+    d = move(k, triangles.gluing[e], corner(triangles, before(t)))
     height, size = outside(k, a, b, c, d)
     return height < -TOLERANCE * size and turn(k, c, d, b) > 0 and turn(k, d, c, a) > 0
 
 
-@bare
-def push(cells, top, e):  # type: ignore[no-untyped-def]
+@compiled(arrays=False)
+def push(triangles, top, e):  # type: ignore[no-untyped-def]
     """Put an edge on the stack, unless it waits there already; returns the new height of the stack."""
-    if cells.queued[e]:
+    if triangles.queued[e]:
         return top
-    cells.queued[e] = True
-    cells.stack[top] = e
+    triangles.queued[e] = True
+    triangles.stack[top] = e
     return top + 1
 
 
-@bare
-def push_all(cells, count):  # type: ignore[no-untyped-def]
+@compiled(arrays=False)
+def push_all(triangles, count):  # type: ignore[no-untyped-def]
     """Put every edge of the first `count` triangles on the empty stack; returns its height."""
     top = 0
     for e in range(3 * count - 1, -1, -1):
-        if e < cells.twin[e]:
-            top = push(cells, top, e)
+        if e < triangles.twin[e]:
+            top = push(triangles, top, e)
     return top
 
 
-@bare
-def push_around(cells, top, e):  # type: ignore[no-untyped-def]
+@compiled(arrays=False)
+def push_around(triangles, top, e):  # type: ignore[no-untyped-def]
     """Put the four outer edges of a quadrilateral on the stack, after its diagonal e has been flipped."""
-    f, g = 3 * (e // 3), 3 * (cells.twin[3 * (e // 3)] // 3)
-    return push(cells, push(cells, push(cells, push(cells, top, f + 1), f + 2), g + 1), g + 2)
+    f, g = 3 * (e // 3), 3 * (triangles.twin[3 * (e // 3)] // 3)
+    return push(triangles, push(triangles, push(triangles, push(triangles, top, f + 1), f + 2), g + 1), g + 2)
 
 
-@bare
-def legalise(cells, top, most):  # type: ignore[no-untyped-def]
+@compiled(arrays=False)
+def legalise(triangles, top, most):  # type: ignore[no-untyped-def]
     """Flip the edges on the stack, and those about them, until none wants it; False after `most` flips."""
     while top > 0:
         top -= 1
-        e = cells.stack[top]
-        cells.queued[e] = False
-        if cells.twin[e] < 0 or not wants_flip(cells, e):
+        e = triangles.stack[top]
+        triangles.queued[e] = False
+        if triangles.twin[e] < 0 or not wants_flip(triangles, e):
             continue
         if most <= 0:
             return False
         most -= 1
-        flip(cells, e)
-        top = push_around(cells, top, e)
+        flip(triangles, e)
+        top = push_around(triangles, top, e)
     return True
 
 
-@bare
-def legalise_star(cells, top):  # type: ignore[no-untyped-def]
-    """The same for the edges opposite a new vertex of Delaunay cells: its own edges never want to flip."""
+@compiled(arrays=False)
+def legalise_star(triangles, top):  # type: ignore[no-untyped-def]
+    """The same for the edges opposite a new vertex of Delaunay triangles: its own edges never want to flip."""
     while top > 0:
         top -= 1
-        e = cells.stack[top]
-        cells.queued[e] = False
-        if wants_flip(cells, e):
-            f, g = e // 3, cells.twin[e] // 3
-            flip(cells, e)
-            top = push(cells, push(cells, top, 3 * f + 1), 3 * g + 2)
+        e = triangles.stack[top]
+        triangles.queued[e] = False
+        if wants_flip(triangles, e):
+            f, g = e // 3, triangles.twin[e] // 3
+            flip(triangles, e)
+            top = push(triangles, push(triangles, top, 3 * f + 1), 3 * g + 2)

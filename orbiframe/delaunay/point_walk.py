@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from orbiframe.compiled.decorator import compiled
+from orbiframe.compiled.matrices import copy, multiply
 from orbiframe.delaunay.lawson_flips import turn
-from orbiframe.delaunay.triangle_arrays import Cells, bare, cells_of, copy, corner, move, multiply
+from orbiframe.delaunay.triangle_arrays import TriangleArrays, arrays_of, corner, move
 from orbiframe.errors import GeometryError
 from orbiframe.meshes.edge_paths import curve_order
 from orbiframe.orbifolds.atlas import Points
@@ -29,24 +30,24 @@ class Located(NamedTuple):
     x: Floats
 
 
-def locate(triangulation: GeodesicTriangulation, points: Points) -> Located:
+def find(triangulation: GeodesicTriangulation, points: Points) -> Located:
     """The triangles in which points of X/H lie; a point on an edge or vertex lies in any of its triangles.
 
     Raises GeometryError for a point that is not finite or too far from its patch to be followed.
     """
-    return locate_in(cells_of(triangulation), triangulation, points)
+    return find_in(arrays_of(triangulation), triangulation, points)
 
 
-def locate_in(cells: Cells, triangulation: GeodesicTriangulation, points: Points) -> Located:
-    """The same for cells that come from a triangulation and may have been flipped since."""
-    face, route = _entrances(cells, triangulation)
+def find_in(triangles: TriangleArrays, triangulation: GeodesicTriangulation, points: Points) -> Located:
+    """The same for triangles that come from a triangulation and may have been flipped since."""
+    face, route = _entrances(triangles, triangulation)
     x = np.ascontiguousarray(points.x, dtype=np.float64)
     found = Located(np.empty(len(x), dtype=np.intp), np.empty((len(x), 3)))
     patch = np.asarray(points.patch, dtype=np.intp)
     finite = np.isfinite(x).all(axis=1)
     lost = int(np.argmin(finite)) if not finite.all() else -1
     if lost < 0:
-        lost = _locate(cells, by_place(patch, x), patch, x, face, route, found.face, found.x)
+        lost = _locate(triangles, by_place(patch, x), patch, x, face, route, found.face, found.x)
     if lost >= 0:
         raise GeometryError(
             f"point {lost}, {x[lost]} in patch {patch[lost]}, was not found in any triangle; give finite points of X "
@@ -61,13 +62,13 @@ def by_place(group: Ints, x: Floats) -> Ints:
     return order[np.argsort(group[order], kind="stable")]
 
 
-def _entrances(cells: Cells, triangulation: GeodesicTriangulation) -> tuple[Ints, Floats]:
+def _entrances(triangles: TriangleArrays, triangulation: GeodesicTriangulation) -> tuple[Ints, Floats]:
     """For every patch some triangle, and the isometry from the frame of the patch to the frame of the triangle."""
     atlas, geometry = triangulation.orbifold.atlas, triangulation.geometry
     face = np.full(atlas.patch_count, -1)
-    patch, first = np.unique(cells.patch[: triangulation.face_count], return_index=True)
+    patch, first = np.unique(triangles.patch[: triangulation.face_count], return_index=True)
     face[patch] = first
-    route = geometry.inverse(cells.placement[np.maximum(face, 0)])
+    route = geometry.inverse(triangles.placement[np.maximum(face, 0)])
     while (face < 0).any():
         steps = np.flatnonzero((face[atlas.tail] < 0) & (face[atlas.head] >= 0) & (atlas.tail >= 0))
         new, chosen = np.unique(atlas.tail[steps], return_index=True)
@@ -77,14 +78,14 @@ def _entrances(cells: Cells, triangulation: GeodesicTriangulation) -> tuple[Ints
     return face, route
 
 
-@bare
-def walk(cells, face, x, route, seed):  # type: ignore[no-untyped-def]
+@compiled(arrays=False)
+def follow(triangles, face, x, route, seed):  # type: ignore[no-untyped-def]
     """Follow a point x from a triangle to the one that it lies in; x and route change with the frames.
 
     Crosses any edge that the point lies beyond, but never straight back: on a Delaunay triangulation that ends, on any
     other with probability 1. Returns the triangle (-1: none found) and the state of the random numbers.
     """
-    moved = cells.work[4]
+    moved = triangles.work[4]
     entered = -1
     for _ in range(100_000):
         seed = (seed * 1103515245 + 12345) % 2147483648
@@ -92,25 +93,25 @@ def walk(cells, face, x, route, seed):  # type: ignore[no-untyped-def]
         for i in range(3):
             e = 3 * face + (seed // 65536 + i) % 3
             if e != entered:
-                a, b = corner(cells, e), corner(cells, e - 2 if e % 3 == 2 else e + 1)
-                if turn(cells.curvature, a, b, (x[0], x[1], x[2])) < 0:
+                a, b = corner(triangles, e), corner(triangles, e - 2 if e % 3 == 2 else e + 1)
+                if turn(triangles.curvature, a, b, (x[0], x[1], x[2])) < 0:
                     way = e
                     break
         if way < 0:
             return face, seed
-        entered = cells.twin[way]
+        entered = triangles.twin[way]
         face = entered // 3
-        step = cells.gluing[entered]
-        x[0], x[1], x[2] = move(cells.curvature, step, x)
+        step = triangles.gluing[entered]
+        x[0], x[1], x[2] = move(triangles.curvature, step, x)
         multiply(step, route, moved)
         copy(moved, route)
     return -1, seed
 
 
-@njit(cache=True)
-def _locate(cells, order, patch, x, first, first_route, found_face, found_x):  # type: ignore[no-untyped-def]
+@compiled
+def _locate(triangles, order, patch, x, first, first_route, found_face, found_x):  # type: ignore[no-untyped-def]
     """Fill in the triangles and coordinates of points; returns -1, or the first point that was not found."""
-    route, y = np.eye(3), np.empty(3)
+    route, y = np.empty((3, 3)), np.empty(3)
     face, seed, last, chain = 0, 1, -1, 0
     for i in order:
         if patch[i] != last or chain >= LONGEST_CHAIN:
@@ -118,10 +119,10 @@ def _locate(cells, order, patch, x, first, first_route, found_face, found_x):  #
             face = first[last]
             copy(first_route[last], route)
         chain += 1
-        y[0], y[1], y[2] = move(cells.curvature, route, x[i])
-        face, seed = walk(cells, face, y, route, seed)
+        y[0], y[1], y[2] = move(triangles.curvature, route, x[i])
+        face, seed = follow(triangles, face, y, route, seed)
         if face < 0:
             return i
         found_face[i] = face
-        found_x[i] = y
+        found_x[i, 0], found_x[i, 1], found_x[i, 2] = y[0], y[1], y[2]
     return -1

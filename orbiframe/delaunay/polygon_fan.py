@@ -1,4 +1,4 @@
-"""The cell of a group cut into triangles: a triangulation of X/H to start from where no mesh is given."""
+"""The fundamental polygon of a group cut into triangles: a triangulation of X/H where no mesh is given."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 
-def cell_triangulation(group: Group) -> GeodesicTriangulation:
-    """The cell of a group in triangles: a polygon as a fan from the origin, the sphere as an octahedron.
+def polygon_triangulation(group: Group) -> GeodesicTriangulation:
+    """The fundamental polygon of a group in triangles: a polygon as a fan from the origin, the sphere as an octahedron.
 
-    Raises GeometryError for a group whose cell is neither.
+    Raises GeometryError for a group whose fundamental polygon is neither.
     """
     word = group.word
     orbifold = Orbifold(group.atlas(), word.euler_characteristic, word.orientable, group.area)

@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from orbiframe.delaunay.fresh_frames import centred, polished
 from orbiframe.delaunay.insertion import insert
 from orbiframe.delaunay.lawson_flips import legalise, push_all
-from orbiframe.delaunay.point_walk import locate_in
+from orbiframe.delaunay.point_walk import find_in
 from orbiframe.delaunay.removal import remove
-from orbiframe.delaunay.triangle_arrays import Cells, cells_of
+from orbiframe.delaunay.triangle_arrays import TriangleArrays, arrays_of
 from orbiframe.errors import MapError
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Orbifold
@@ -45,12 +45,12 @@ def delaunay(triangulation: GeodesicTriangulation, sites: Points) -> SiteTriangu
     if not len(sites.patch):
         raise MapError("no sites are given; a triangulation of a closed surface has at least one vertex")
     start = _fine(triangulation)
-    cells = _flipped(start, len(sites.patch))
-    located = locate_in(cells, start, sites)
-    vertex, count = insert(cells, start.face_count, start.vertex_count, located, start.orbifold.area)
+    triangles = _flipped(start, len(sites.patch))
+    located = find_in(triangles, start, sites)
+    vertex, count = insert(triangles, start.face_count, start.vertex_count, located, start.orbifold.area)
     _require_distinct(vertex)
-    remove(cells, _others(count, vertex))
-    return _result(cells, triangulation.orbifold, vertex)
+    remove(triangles, _others(count, vertex))
+    return _result(triangles, triangulation.orbifold, vertex)
 
 
 def delaunay_of_vertices(triangulation: GeodesicTriangulation, vertices: ArrayLike | None = None) -> SiteTriangulation:
@@ -63,9 +63,9 @@ def delaunay_of_vertices(triangulation: GeodesicTriangulation, vertices: ArrayLi
     if not len(chosen):
         raise MapError("no vertices are chosen; a triangulation of a closed surface has at least one vertex")
     _require_distinct(chosen)
-    cells = _flipped(triangulation, 0)
-    remove(cells, _others(count, chosen))
-    return _result(cells, triangulation.orbifold, chosen)
+    triangles = _flipped(triangulation, 0)
+    remove(triangles, _others(count, chosen))
+    return _result(triangles, triangulation.orbifold, chosen)
 
 
 def _others(count: int, vertex: Ints) -> Ints:
@@ -93,32 +93,32 @@ def _fine(triangulation: GeodesicTriangulation) -> GeodesicTriangulation:
     return triangulation
 
 
-def _flipped(triangulation: GeodesicTriangulation, more: int) -> Cells:
-    """Cells that are Delaunay, with room for `more` sites."""
-    cells = cells_of(triangulation, more)
-    _settle(cells, triangulation.face_count)
-    return cells
+def _flipped(triangulation: GeodesicTriangulation, more: int) -> TriangleArrays:
+    """TriangleArrays that are Delaunay, with room for `more` sites."""
+    triangles = arrays_of(triangulation, more)
+    _settle(triangles, triangulation.face_count)
+    return triangles
 
 
-def _settle(cells: Cells, count: int) -> None:
-    if not legalise(cells, push_all(cells, count), _MOST_FLIPS_EACH * count):
+def _settle(triangles: TriangleArrays, count: int) -> None:
+    if not legalise(triangles, push_all(triangles, count), _MOST_FLIPS_EACH * count):
         raise MapError(
             f"the edges of {count} triangles were flipped {_MOST_FLIPS_EACH * count} times without an end; the "
             "triangulation to start from is no triangulation of X/H: check that its areas are positive"
         )
 
 
-def _result(cells: Cells, orbifold: Orbifold, sites: Ints) -> SiteTriangulation:
+def _result(triangles: TriangleArrays, orbifold: Orbifold, sites: Ints) -> SiteTriangulation:
     """The triangles that are left, and the numbers that the vertices of sites have among them."""
-    _settle(cells, len(cells.corners))
-    alive = np.flatnonzero(cells.twin[::3] >= 0)
-    number = np.cumsum(cells.twin[::3] >= 0) - 1
+    _settle(triangles, len(triangles.corners))
+    alive = np.flatnonzero(triangles.twin[::3] >= 0)
+    number = np.cumsum(triangles.twin[::3] >= 0) - 1
     halfedge = (3 * alive[:, None] + np.arange(3)).ravel()
-    twin = cells.twin[halfedge]
+    twin = triangles.twin[halfedge]
     twin = 3 * number[twin // 3] + twin % 3
-    same, patch, placement = cells.same[halfedge], cells.patch[alive], cells.placement[alive]
-    triangulation = polished(centred(orbifold, cells.corners[alive], twin, same, patch, placement))
-    return SiteTriangulation(triangulation, _by_first_corner(cells.vertex[halfedge], len(cells.seat))[sites])
+    same, patch, placement = triangles.same[halfedge], triangles.patch[alive], triangles.placement[alive]
+    triangulation = polished(centred(orbifold, triangles.corners[alive], twin, same, patch, placement))
+    return SiteTriangulation(triangulation, _by_first_corner(triangles.vertex[halfedge], len(triangles.seat))[sites])
 
 
 def _by_first_corner(label: Ints, most: int) -> Ints:

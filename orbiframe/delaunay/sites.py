@@ -69,9 +69,9 @@ def poisson_disc(triangulation: GeodesicTriangulation, radius: float, seed: int 
 
 
 def lloyd(triangulation: GeodesicTriangulation, steps: int = 1, density: ArrayLike = 1.0) -> GeodesicTriangulation:
-    """Every vertex moved to the centroid of its Voronoi cell, `steps` times: the sites become more even.
+    """Every vertex moved to the centroid of its Voronoi region, `steps` times: the sites become more even.
 
-    The centroid m of a cell lies on the ray of the integral of x over it, which makes the integral of the versine
+    The centroid m of a region lies on the ray of the integral of x over it, which makes the integral of the versine
     c(x, m) least: 1 - cos d, d^2 / 2 or cosh d - 1. density: a weight, or one for every vertex, (V,), linear over the
     triangles; sites come to lie as its fourth root. A vertex goes only so far that all triangles stay positive.
     """
@@ -134,9 +134,10 @@ def _joined(sites: GeodesicTriangulation, old: Points, new: Points, rank: Ints, 
 
 
 def _centroids(triangulation: GeodesicTriangulation, density: Floats) -> Floats:
-    """The centroid of every Voronoi cell, in the frame of the reference corner of its vertex, (V, 3).
+    """The centroid of every Voronoi region, in the frame of the reference corner of its vertex, (V, 3).
 
-    Where the density changes so much within a cell with obtuse triangles that no centroid is found, the vertex itself.
+    Where the density changes so much within a region with obtuse triangles that no centroid is found, the vertex
+    itself.
     """
     geometry, parts = triangulation.geometry, kites(triangulation)
     flat = parts.reshape(-1, 3, 3)

@@ -1,4 +1,4 @@
-"""Voronoi cells of the vertices of a Delaunay triangulation of X/H, seen from its triangles."""
+"""Voronoi regions of the vertices of a Delaunay triangulation of X/H, seen from its triangles."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ def circumradii(triangulation: GeodesicTriangulation) -> Floats:
 
 
 def kites(triangulation: GeodesicTriangulation) -> Floats:
-    """What every corner has of the Voronoi cell of its vertex, as two triangles, (F, 3, 2, 3, 3).
+    """What every corner has of the Voronoi region of its vertex, as two triangles, (F, 3, 2, 3, 3).
 
     [triangle, corner, half, point, coordinate]: the vertex, the middle of the edge after it and the circumcentre; the
     vertex, the circumcentre and the middle of the edge before it. Clockwise, and to be subtracted, where the centre
-    lies beyond the edge. They fill the cell.
+    lies beyond the edge. They fill the region.
     """
     x = triangulation.corners
     middle = triangulation.geometry.project(x + np.roll(x, -1, axis=1))
@@ -47,8 +47,8 @@ def kites(triangulation: GeodesicTriangulation) -> Floats:
     return np.stack([first, second], axis=2)
 
 
-def cell_areas(triangulation: GeodesicTriangulation) -> Floats:
-    """The area of the Voronoi cell of every vertex of a Delaunay triangulation, (V,); their sum is that of X/H."""
+def region_areas(triangulation: GeodesicTriangulation) -> Floats:
+    """The area of the Voronoi region of every vertex of a Delaunay triangulation, (V,); their sum is that of X/H."""
     p = kites(triangulation)
     area = triangulation.geometry.triangle_area(p[..., 0, :], p[..., 1, :], p[..., 2, :]).sum(axis=-1)
     return np.asarray(np.bincount(triangulation.vertex.ravel(), weights=area.ravel()), dtype=np.float64)

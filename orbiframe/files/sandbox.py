@@ -6,13 +6,13 @@ import importlib
 import signal
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 import numpy as np
 
 from orbiframe.errors import FormatError, OrbiframeError, PluginError
 from orbiframe.files.confinement import confine
+from orbiframe.files.temporary_folder import temporary_folder
 from orbiframe.meshes.polyhedron import Polyhedron
 
 SECONDS = 60.0
@@ -32,8 +32,8 @@ def confined_read(target: str, path: Path, *, seconds: float = SECONDS, memory: 
     module on, where the system can limit it. The process can open no other file, see `confinement.confine`. Raises
     FormatError if the process ends in any way but well; FormatError and PluginError of the function are passed on.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        parcel = Path(folder) / "polyhedron.npz"
+    with temporary_folder() as folder:
+        parcel = folder / "polyhedron.npz"
         _run("read", target, path, parcel, *_limits(path, seconds, memory))
         return _unpacked(parcel)
 
@@ -42,8 +42,8 @@ def confined_write(
     target: str, path: Path, polyhedron: Polyhedron, *, seconds: float = SECONDS, memory: int = MEMORY
 ) -> None:
     """Call the function `target` with a path and a polyhedron in a process of its own; see `confined_read`."""
-    with tempfile.TemporaryDirectory() as folder:
-        parcel = Path(folder) / "polyhedron.npz"
+    with temporary_folder() as folder:
+        parcel = folder / "polyhedron.npz"
         _pack(parcel, polyhedron)
         _run("write", target, path, parcel, *_limits(parcel, seconds, memory))
 

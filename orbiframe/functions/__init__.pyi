@@ -1,7 +1,14 @@
 """The public names of orbiframe.functions, each with the module it lives in."""
 
-from .basis import Basis as Basis, DifferentiableBasis as DifferentiableBasis, lifted as lifted
+from .basis import (
+    Basis as Basis,
+    DifferentiableBasis as DifferentiableBasis,
+    PiecewiseBasis as PiecewiseBasis,
+    lifted as lifted,
+)
+from .feet import around as around, foot_points as foot_points, foot_step as foot_step, moved as moved
 from .fitter import Fitter as Fitter
 from .jet_quotient import divide_jets as divide_jets
 from .orbit_sum_basis import OrbitSumBasis as OrbitSumBasis
 from .samples import Samples as Samples, coordinate_samples as coordinate_samples
+from .smooth_samples import semi_smooth_samples as semi_smooth_samples, vertex_samples as vertex_samples

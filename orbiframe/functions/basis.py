@@ -42,6 +42,10 @@ class Basis(ABC):
 class DifferentiableBasis(Basis):
     """A basis that knows its covariant derivatives."""
 
+    def design_matrix(self, points: Points) -> csr_array:
+        """The values of all functions at n points, sparse (n, size): the jets of order 0."""
+        return self.jet_matrices(points, 0)[0]
+
     @abstractmethod
     def jet_matrices(self, points: Points, order: int) -> list[csr_array]:
         """Values and covariant derivatives up to order 0, 1, 2 or 3, each sparse (n, size): 1, 3, 6 or 12 of them.
@@ -57,6 +61,10 @@ class DifferentiableBasis(Basis):
             np.stack([matrix @ coefficients for matrix in self.jet_matrices(part, order)]) for part in _chunks(points)
         ]
         return np.concatenate(parts, axis=1)
+
+
+class PiecewiseBasis(DifferentiableBasis):
+    """A basis of piecewise polynomials or their products: its surfaces have exact patches."""
 
 
 def lifted(basis: Basis, coefficients: Floats) -> Callable[[Floats], Floats]:

@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 from orbiframe.errors import FitError
 from orbiframe.functions.basis import JET_KINDS, DifferentiableBasis
 from orbiframe.functions.jet_quotient import divide_jets
+from orbiframe.functions.lifted_centres import LiftedCentres
 from orbiframe.functions.orbit_sum import Pairs, reaching_pairs
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Orbifold
@@ -34,21 +35,18 @@ class OrbitSumBasis(DifferentiableBasis):
         self.centres = centres
         self.support = support
         self.size = len(support)
+        self._lifted = LiftedCentres(orbifold, centres, support)
 
     @abstractmethod
     def profile(self, t: Floats) -> tuple[Floats, ...]:
         """f, f' and f'' at t >= 0, (n,) each: positive before 1, zero from 1 on; f''' too, for jets of order 3."""
-
-    def design_matrix(self, points: Points) -> csr_array:
-        """The values of all functions at n points, sparse (n, size). Raises FitError at a point that none reaches."""
-        return self.jet_matrices(points, 0)[0]
 
     def jet_matrices(self, points: Points, order: int) -> list[csr_array]:
         """See `DifferentiableBasis`. Raises FitError at a point that no function reaches.
 
         Order 3 needs f''' from the profile: FitError where it gives none.
         """
-        pairs = reaching_pairs(self.orbifold, self.centres, self.support, points, slopes=order > 0)
+        pairs = reaching_pairs(self._lifted, points, slopes=order > 0)
         blocks = [self._jets(block, points, order) for block in pairs]
         return _assemble(blocks, (len(points.patch), self.size), JET_KINDS[order])
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from orbiframe.compiled.decorator import compiled
 
 # Sides that a point is equally far beyond, up to this share of the size of its coordinates, are a tie, which the
 # number of the side decides. Whoever is this near to the limit itself cannot be told from a tie.
@@ -12,16 +13,16 @@ _UNSURE = 1e-13
 DONE, TIED, ON_RIM, MANY = 0, 1, 2, 3  # how a walk ended
 
 
-@njit(cache=True, inline="always")
+@compiled(inline=True)
 def _product(k, a, b, reverses, c, d):  # type: ignore[no-untyped-def]
     if reverses:
         c, d = c.conjugate(), d.conjugate()
     return a * c - k * b * d.conjugate(), a * d + b * c.conjugate()
 
 
-@njit(cache=True, inline="always")
+@compiled(inline=True)
 def _parent_side(x0, x1, x2, covectors, size, heights):  # type: ignore[no-untyped-def]
-    """The first of the sides that x is farthest beyond; -1 for a point of the cell, -2 where rounding decides."""
+    """The first of the sides that x is farthest beyond; -1 for a point of the domain, -2 where rounding decides."""
     best = -np.inf
     for s in range(len(covectors)):
         heights[s] = covectors[s, 0] * x0 + covectors[s, 1] * x1 + covectors[s, 2] * x2
@@ -40,7 +41,7 @@ def _parent_side(x0, x1, x2, covectors, size, heights):  # type: ignore[no-untyp
     return -2
 
 
-@njit(cache=True, inline="always")
+@compiled(inline=True)
 def _is_parent(x0, x1, x2, side, covectors, rivals, rival_count, size):  # type: ignore[no-untyped-def]
     """1 if x is beyond a side and farther than beyond those that cross it, 0 if not; -1 where a tie is in sight."""
     margin = 2 * TIE * size * (abs(x0) + abs(x1) + abs(x2))
@@ -56,7 +57,7 @@ def _is_parent(x0, x1, x2, side, covectors, rivals, rival_count, size):  # type:
     return clear
 
 
-@njit(cache=True)
+@compiled
 def _rivals(k, covectors, bounding):  # type: ignore[no-untyped-def]
     """For every side the sides with a point of X, or nearly one, beyond both: no other matters for points beyond it.
 
@@ -66,21 +67,31 @@ def _rivals(k, covectors, bounding):  # type: ignore[no-untyped-def]
     rivals, count = np.empty((sides, sides), dtype=np.int64), np.zeros(sides, dtype=np.int64)
     for s in range(sides):
         for t in range(sides):
-            c = np.cross(covectors[s], covectors[t])
-            rim = c[1] * c[1] + c[2] * c[2]
-            if s != t and (k >= 0 or max(s, t) >= bounding or c[0] * c[0] > rim * (1 - 1e-6)):
+            u, v = covectors[s], covectors[t]
+            c0, c1, c2 = u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+            if s != t and (k >= 0 or max(s, t) >= bounding or c0 * c0 > (c1 * c1 + c2 * c2) * (1 - 1e-6)):
                 rivals[s, count[s]] = t
                 count[s] += 1
     return rivals, count
 
 
-@njit(cache=True, inline="always")
+@compiled(inline=True)
 def _put(tree, n, a, b, reverses, parent, step):  # type: ignore[no-untyped-def]
     tree[0][n], tree[1][n], tree[2][n] = a, b, reverses
     tree[3][n], tree[4][n] = parent, step
 
 
-@njit(cache=True)
+@compiled
+def _largest(covectors):  # type: ignore[no-untyped-def]
+    """The size of the largest entry."""
+    largest = 0.0
+    for s in range(len(covectors)):
+        for i in range(3):
+            largest = max(largest, abs(covectors[s, i]))
+    return largest
+
+
+@compiled
 def _empty(count):  # type: ignore[no-untyped-def]
     return (
         np.empty(count, dtype=np.complex128),
@@ -91,21 +102,21 @@ def _empty(count):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True)
+@compiled
 def _longer(tree, count):  # type: ignore[no-untyped-def]
     """The same elements with room for twice as many."""
     grown = _empty(2 * count)
-    grown[0][:count], grown[1][:count], grown[2][:count] = tree[0][:count], tree[1][:count], tree[2][:count]
-    grown[3][:count], grown[4][:count] = tree[3][:count], tree[4][:count]
+    for n in range(count):
+        _put(grown, n, tree[0][n], tree[1][n], tree[2][n], tree[3][n], tree[4][n])
     return grown
 
 
-@njit(cache=True)
+@compiled
 def grow(k, generators, mate, covectors, bounding, reach, rim, depth, room, most):  # type: ignore[no-untyped-def]
     """All elements with |b|^2 <= reach and at most `depth` steps from the identity, breadth first.
 
     k: curvature; generators: a, b, reverses of the elements across the sides; covectors: (m, 3), see
-    `DirichletCell.bisectors`, the first `bounding` of them bound the cell. Where the image of the origin under the
+    `DirichletDomain.bisectors`, the first `bounding` of them bound the domain. Where the image of the origin under the
     inverse of g lies beyond side s, g times generator s is nearer to the identity. A product g h is kept if its parent
     is g, so no element comes twice and none is looked up.
 
@@ -118,7 +129,7 @@ def grow(k, generators, mate, covectors, bounding, reach, rim, depth, room, most
     c, d, turns = generators
     sides, count, end, level = len(mate), 1, 1, 0
     tree, heights = _empty(max(room, 2 * sides + 2)), np.empty(sides)
-    size = np.abs(covectors).max() if sides else 1.0
+    size = _largest(covectors) if sides else 1.0
     rivals, rival_count = _rivals(k, covectors, bounding)
     _put(tree, 0, 1.0 + 0.0j, 0.0 + 0.0j, False, -1, -1)
     n = 0

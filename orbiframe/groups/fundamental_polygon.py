@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from orbiframe.components.geometry_names import geometry_name
 from orbiframe.errors import GeometryError
 from orbiframe.planes.geometry import Geometry
-from orbiframe.planes.precise_isometry import Spin
+from orbiframe.planes.precise_isometry import PreciseIsometry
 from orbiframe.words.word import Word
 
 Floats = NDArray[np.float64]
@@ -74,7 +74,7 @@ class FundamentalPolygon:
 
         Found with the vertex moved to the origin, so that they keep their digits where the polygon is large.
         """
-        corner = Spin.translation(self.geometry.curvature, self.vertices)
+        corner = PreciseIsometry.translation(self.geometry.curvature, self.vertices)
         turned = np.arange(len(self.vertices))
         after, before = ((corner.inverse @ corner[np.roll(turned, shift)]).direction for shift in (-1, 1))
         return after, before
@@ -168,8 +168,8 @@ class FundamentalPolygon:
 
     def _along(self, points: Floats, start: Floats, end: Floats) -> Bools:
         """Which points lie on the side of `end` of the perpendicular through `start`, (..., n)."""
-        offset = self.geometry.chord(start, points[..., None, :])
-        return np.asarray(self.geometry.inner(self.geometry.log(start, end), offset) >= 0)
+        geometry, there = self.geometry, points[..., None, :]
+        return np.asarray(geometry.inner(start, geometry.log(start, end), geometry.log(start, there)) >= 0)
 
     def _product(self, relation: tuple[int, ...]) -> Floats:
         product = np.eye(3)
@@ -190,7 +190,7 @@ def regular_polygon(geometry: Geometry, word: Word) -> FundamentalPolygon:
     size, cycles = len(word), word.vertex_cycles
     if geometry.curvature > 0:
         raise GeometryError(
-            f"'{word}' has no convex polygon on the sphere: the cells are the whole sphere and the hemisphere; "
+            f"'{word}' has no convex polygon on the sphere: the polygons are the whole sphere and the hemisphere; "
             "choose the group 'finite'"
         )
     if np.sign(word.euler_characteristic) != geometry.curvature:

@@ -10,14 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 from orbiframe.errors import GeometryError
 from orbiframe.orbifolds.atlas import Atlas
 from orbiframe.planes.geometry import Geometry
-from orbiframe.planes.precise_isometry import Spin
+from orbiframe.planes.precise_isometry import PreciseIsometry
 from orbiframe.words.word import Word, parse_letters
 
 Floats = NDArray[np.float64]
 
 
 class Group(ABC):
-    """A discrete group of isometries that acts freely, with a cell F round the origin whose sides a word glues.
+    """A discrete group of isometries that acts freely, with a polygon F round the origin whose sides a word glues.
 
     geometry; word: its letters name the generators, letter a the pairing of the first side marked a; area: of X/H.
     """
@@ -28,7 +28,7 @@ class Group(ABC):
 
     @abstractmethod
     def atlas(self) -> Atlas:
-        """X/H as one patch, the cell F, with the side pairings as transitions."""
+        """X/H as one patch, the polygon F, with the side pairings as transitions."""
 
     @abstractmethod
     def tiles(self, radius: float) -> Floats:
@@ -45,27 +45,27 @@ class Group(ABC):
     def generator(self, label: int) -> Floats:
         """The isometry that a label of the word stands for, (3, 3)."""
 
-    def pairings(self) -> Spin:
+    def pairings(self) -> PreciseIsometry:
         """The transitions of `atlas()` without the identity, as pairs of complex numbers, (n,)."""
-        return Spin.of_matrix(self.geometry.curvature, self.atlas().isometry[1:])
+        return PreciseIsometry.of_matrix(self.geometry.curvature, self.atlas().isometry[1:])
 
-    def generator_spin(self, label: int) -> Spin:
+    def precise_generator(self, label: int) -> PreciseIsometry:
         """The isometry that a label of the word stands for, as a pair of complex numbers."""
-        return Spin.of_matrix(self.geometry.curvature, self.generator(label))
+        return PreciseIsometry.of_matrix(self.geometry.curvature, self.generator(label))
 
     def element(self, letters: str | tuple[int, ...]) -> Floats:
         """The isometry of a word in the generators, (3, 3), upper case for inverses; "" is the identity.
 
         Raises GeometryError for a letter that the group does not have.
         """
-        return self.element_spin(letters).matrix
+        return self.precise_element(letters).matrix
 
-    def element_spin(self, letters: str | tuple[int, ...]) -> Spin:
+    def precise_element(self, letters: str | tuple[int, ...]) -> PreciseIsometry:
         """The same as a pair of complex numbers, which keeps the digits that a large matrix loses."""
-        product = Spin.of_matrix(self.geometry.curvature, np.eye(3))
+        product = PreciseIsometry.of_matrix(self.geometry.curvature, np.eye(3))
         for letter in parse_letters(letters) if isinstance(letters, str) else letters:
             if letter not in self.word.letters and -letter not in self.word.letters:
                 raise GeometryError(f"letter {letter} is no generator; the generators are the letters of '{self.word}'")
-            g = self.generator_spin(abs(letter))
+            g = self.precise_generator(abs(letter))
             product = product @ (g if letter > 0 else g.inverse)
         return product

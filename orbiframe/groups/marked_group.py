@@ -10,12 +10,12 @@ from orbiframe.groups.corner_elements import corner_elements, products_of_pairin
 from orbiframe.groups.group import Group
 from orbiframe.groups.marking import Marking
 from orbiframe.groups.polygon_group import PolygonGroup
-from orbiframe.planes.precise_isometry import Spin
+from orbiframe.planes.precise_isometry import PreciseIsometry
 
 
 @dataclass(frozen=True, eq=False)
 class MarkedGroup:
-    """A group H and a polyhedron cut open to the cell of H: the target of a map that the polyhedron does not choose.
+    """A group H and a polyhedron cut open to the polygon of H: the target of a map that the polyhedron does not choose.
 
     group, marking: with the same word; name: of the group, for the report. Raises GeometryError if the words differ.
     """
@@ -37,10 +37,10 @@ class MarkedGroup:
         return f"{self.name}, word {self.group.word}"
 
     @cached_property
-    def elements(self) -> Spin:
-        """For every corner c of the cell the element g_c that takes corner 0 to it, (n,).
+    def elements(self) -> PreciseIsometry:
+        """For every corner c of the polygon the element g_c that takes corner 0 to it, (n,).
 
-        A halfedge that runs in the cell from corner p to corner q is the deck transformation g_p^-1 g_q of corner 0.
+        A halfedge that runs in the polygon from corner p to corner q is the deck transformation g_p^-1 g_q of corner 0.
         """
         if isinstance(self.group, PolygonGroup):
             return corner_elements(self.group.polygon)

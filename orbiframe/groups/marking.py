@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order
 
+from orbiframe.compiled.decorator import compiled
 from orbiframe.errors import TopologyError
 from orbiframe.meshes.edge_paths import joining_edges
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -121,7 +121,7 @@ def _turned_faces(polyhedron: Polyhedron, cotree: Bools) -> Bools:
     )
 
 
-@njit(cache=True)
+@compiled
 def _turned(offsets, face, twin, same, crossed, count):  # type: ignore[no-untyped-def]
     """From face 0 through the tree: of two faces that run the same way along their edge one is turned over."""
     turned, reached = np.zeros(count, dtype=np.bool_), np.zeros(count, dtype=np.bool_)
@@ -151,7 +151,7 @@ def _boundary(polyhedron: Polyhedron, turned: Bools, cotree: Bools, is_side: Boo
     return order, position
 
 
-@njit(cache=True)
+@compiled
 def _walked(first, ahead, corner, twin, crossed, is_side, count):  # type: ignore[no-untyped-def]
     """One step for every corner: turn about it from one edge of its face to the next, and cross that in the disc."""
     order, position = np.empty(count, dtype=np.intp), np.empty(len(ahead), dtype=np.intp)

@@ -1,4 +1,4 @@
-"""SymmetryPolygon: a convex polygon with glued sides and mirrors, and Poincare's conditions with singular points."""
+"""MirroredPolygon: a convex polygon with glued sides and mirrors, and Poincare's conditions with singular points."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from orbiframe.components.geometry_names import geometry_name
 from orbiframe.errors import GeometryError
 from orbiframe.groups.fundamental_polygon import FundamentalPolygon
 from orbiframe.planes.geometry import Geometry
-from orbiframe.words.conway_symbol import Signature
+from orbiframe.words.conway_symbol import ConwaySymbol
 from orbiframe.words.mirror_word import MirrorWord, word_of
 
 Floats = NDArray[np.float64]
@@ -23,13 +23,13 @@ _SOLVED = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
-class SymmetryPolygon(FundamentalPolygon):
+class MirroredPolygon(FundamentalPolygon):
     """A convex polygon with the origin inside, whose sides are glued in pairs or are mirrors.
 
     A vertex has the order n if the angles round it add up to 2 pi / n, or between two mirrors to pi / n: a cone point,
     a corner, and for n = 1 a point like others. Then the side pairings generate a discrete group with this polygon as
-    its cell (Poincare's theorem). word: a `MirrorWord`; half a turn about the middle of a side is that side cut in two
-    there, at a vertex with the angle pi, and glued as aA.
+    its polygon (Poincare's theorem). word: a `MirrorWord`; half a turn about the middle of a side is that side cut in
+    two there, at a vertex with the angle pi, and glued as aA.
     """
 
     word: MirrorWord
@@ -50,7 +50,7 @@ class SymmetryPolygon(FundamentalPolygon):
         return np.asarray(self.angle_sums - self._whole_angles / np.array(self.orders))
 
     @property
-    def signature(self) -> Signature:
+    def signature(self) -> ConwaySymbol:
         """The orbifold that one gets by folding, read off the angles and the gluing."""
         return self.word.signature(self.orders)
 
@@ -81,13 +81,13 @@ class SymmetryPolygon(FundamentalPolygon):
         return np.array([np.pi if cycle.ends else 2 * np.pi for cycle in self.word.cycles])
 
 
-def orbifold_cell(geometry: Geometry, signature: Signature) -> SymmetryPolygon:
-    """A convex cell for an orbifold with Euler characteristic 0 or less.
+def orbifold_polygon(geometry: Geometry, signature: ConwaySymbol) -> MirroredPolygon:
+    """A convex polygon for an orbifold with Euler characteristic 0 or less.
 
-    The cell is a fan of triangles about the origin. Each of its vertices is the centre of a circle, circles of
+    The polygon is a fan of triangles about the origin. Each of its vertices is the centre of a circle, circles of
     neighbours touch, and the angles at a vertex add up to 2 pi divided by its order: radii like these exist, and only
     one set (in E^2 up to scale), by the theorem of Koebe, Andreev and Thurston. Triangle groups give their triangle. In
-    E^2 the cell has the area 1, and its last side is the lowest.
+    E^2 the polygon has the area 1, and its last side is the lowest.
 
     Raises GeometryError for another geometry, or where the radii cannot be found to ten digits.
     """
@@ -106,7 +106,7 @@ def orbifold_cell(geometry: Geometry, signature: Signature) -> SymmetryPolygon:
     direction = np.concatenate([[0.0], np.cumsum(central)[:-1]])
     if geometry.curvature == 0:
         reach, direction = _unit_area(reach, direction, central)
-    return SymmetryPolygon(geometry, geometry.from_polar(reach, direction), word)
+    return MirroredPolygon(geometry, geometry.from_polar(reach, direction), word)
 
 
 def _unit_area(reach: Floats, direction: Floats, central: Floats) -> tuple[Floats, Floats]:

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from orbiframe.errors import GeometryError
-from orbiframe.groups.dirichlet_domain import DirichletCell, dirichlet_cell
-from orbiframe.groups.elements import cell_elements
+from orbiframe.groups.dirichlet_domain import DirichletDomain, dirichlet_domain_of
+from orbiframe.groups.elements import elements_of_domain
 from orbiframe.groups.fundamental_polygon import FundamentalPolygon
 from orbiframe.groups.group import Group
 from orbiframe.orbifolds.atlas import Atlas
-from orbiframe.planes.precise_isometry import Spin
+from orbiframe.planes.precise_isometry import PreciseIsometry
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -50,33 +50,35 @@ class PolygonGroup(Group):
         """The pairing of `word.generator_side(label)`."""
         return np.asarray(self.polygon.pairings[self.word.generator_side(label)])
 
-    def generator_spin(self, label: int) -> Spin:
+    def precise_generator(self, label: int) -> PreciseIsometry:
         """The pairing of `word.generator_side(label)`."""
         return self.pairings()[self.word.generator_side(label)]
 
-    def pairings(self) -> Spin:
+    def pairings(self) -> PreciseIsometry:
         """The side pairings, with all digits."""
         return self._pairings
 
     @cached_property
-    def _pairings(self) -> Spin:
+    def _pairings(self) -> PreciseIsometry:
         """From flags in the middle of the sides; no large matrix loses their digits."""
         k, size = self.geometry.curvature, len(self.word)
-        middle, head = (Spin.translation(k, x) for x in (self.polygon.side_flags[..., 0], self.polygon.heads))
-        flags = middle @ Spin.rotation(k, (middle.inverse @ head).direction)
+        middle, head = (
+            PreciseIsometry.translation(k, x) for x in (self.polygon.side_flags[..., 0], self.polygon.heads)
+        )
+        flags = middle @ PreciseIsometry.rotation(k, (middle.inverse @ head).direction)
         parallel = np.array([self.word.reverses(side) for side in range(size)])
-        swap = Spin.rotation(k, np.where(parallel, 0.0, np.pi), parallel)
+        swap = PreciseIsometry.rotation(k, np.where(parallel, 0.0, np.pi), parallel)
         return flags @ swap @ flags[np.array(self.word.mate)].inverse
 
     @cached_property
-    def dirichlet_cell(self) -> DirichletCell:
+    def dirichlet_domain(self) -> DirichletDomain:
         """The points that are nearer to the origin than to its images; the polygon itself where it is regular."""
-        return dirichlet_cell(self)
+        return dirichlet_domain_of(self)
 
     def tiles(self, radius: float) -> Floats:
         """Every g whose tile meets the disc: of those with a centre near enough, see `elements_within`."""
         slack = radius + 1e-9 * (1 + radius)
-        found = cell_elements(self.dirichlet_cell, self.area, slack + self.polygon.circumradius).spin()
+        found = elements_of_domain(self.dirichlet_domain, self.area, slack + self.polygon.circumradius).precise()
         # gF meets the disc about the origin if and only if F meets the disc about the preimage of the origin.
         near = found[self.polygon.meets_disc(found.inverse.place, slack)].matrix
         return near[np.argsort(self.geometry.distance(self.geometry.origin, near[..., 0]), kind="stable")]

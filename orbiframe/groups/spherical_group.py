@@ -12,7 +12,7 @@ from orbiframe.errors import GeometryError
 from orbiframe.groups.group import Group
 from orbiframe.orbifolds.atlas import Atlas
 from orbiframe.planes.geometry import Geometry
-from orbiframe.words.conway_symbol import Signature
+from orbiframe.words.conway_symbol import ConwaySymbol
 from orbiframe.words.mirror_word import MirrorWord, Relations, word_of
 
 Floats = NDArray[np.float64]
@@ -26,7 +26,7 @@ _PLACES = 2000  # points among which the origin is chosen
 class SphericalGroup(Group):
     """The group of one of the seven families or seven exceptions of Conway's list of spherical orbifolds.
 
-    The cell holds the points x for which no image g x is nearer to the origin than x. The origin is a point that its
+    The domain holds the points x for which no image g x is nearer to the origin than x. The origin is a point that its
     images stay well away from, so only the identity fixes it. For a group of reflections that is a chamber.
 
     Raises GeometryError for an orbifold that is not spherical, or another geometry.
@@ -34,7 +34,7 @@ class SphericalGroup(Group):
 
     word: MirrorWord
 
-    def __init__(self, geometry: Geometry, signature: Signature) -> None:
+    def __init__(self, geometry: Geometry, signature: ConwaySymbol) -> None:
         if geometry.curvature != 1 or signature.curvature != 1:
             raise GeometryError(
                 f"'{signature}' has the Euler characteristic {signature.euler_characteristic}, wanted in "
@@ -66,9 +66,9 @@ class SphericalGroup(Group):
         return np.asarray(self._generators[label - 1])
 
     def tiles(self, radius: float) -> Floats:
-        """Every g whose tile meets the disc, by the distance of the origin from the cell moved by g."""
+        """Every g whose tile meets the disc, by the distance of the origin from the domain moved by g."""
         centres = self.geometry.inverse(self.elements)[..., 0]
-        gap = np.array([self._distance_from_cell(centre) for centre in centres])
+        gap = np.array([self._distance_from_domain(centre) for centre in centres])
         near = np.flatnonzero(gap <= radius + 1e-9)
         order = np.argsort(self.geometry.distance(self.geometry.origin, self.elements[near, :, 0]), kind="stable")
         return self.elements[near[order]]
@@ -82,7 +82,7 @@ class SphericalGroup(Group):
 
     @cached_property
     def sides(self) -> Floats:
-        """Covectors (m, 3), positive in the cell, of the great circles that bound it.
+        """Covectors (m, 3), positive in the domain, of the great circles that bound it.
 
         A half of the sphere has one, which its origin is 90 degrees away from, a lune two.
         """
@@ -95,18 +95,18 @@ class SphericalGroup(Group):
 
     @cached_property
     def vertices(self) -> Floats:
-        """The corners of the cell, (k, 3): none of a half of the sphere, two of a lune."""
+        """The corners of the domain, (k, 3): none of a half of the sphere, two of a lune."""
         return self._corners_of(self.sides)
 
     @cached_property
     def circumradius(self) -> float:
-        """Every point of the cell lies within this of the origin."""
+        """Every point of the domain lies within this of the origin."""
         if len(self.vertices) == 0:
             return float(np.pi / (1 + len(self.sides)))
         return float(self.geometry.distance(self.geometry.origin, self.vertices).max())
 
     def _leaves_some(self, corners: Floats, plane: Floats, planes: Floats) -> bool:
-        """Whether a great circle goes on along the cell from some of its corners, and does not only touch it there."""
+        """Whether a great circle goes on along the domain from some corner, and does not only touch it there."""
         on = corners[np.abs(corners @ plane) < _SAME]
         steps = _STEP * np.cross(plane, on)
         ahead = np.concatenate([on + steps, on - steps])
@@ -123,19 +123,19 @@ class SphericalGroup(Group):
         repeated = cKDTree(ends).query_pairs(_SAME, output_type="ndarray")
         return ends[np.setdiff1d(np.arange(len(ends)), repeated.max(axis=1))] if len(ends) else ends
 
-    def _distance_from_cell(self, point: Floats) -> float:
-        """How far a point is from the cell: its own place, its feet on the sides and the corners are tried."""
+    def _distance_from_domain(self, point: Floats) -> float:
+        """How far a point is from the domain: its own place, its feet on the sides and the corners are tried."""
         feet = point - (self.sides @ point)[:, None] * self.sides
         feet = feet[np.linalg.norm(feet, axis=-1) > _SAME]
         places = np.concatenate([point[None], self.geometry.project(feet), self.vertices])
         inside = (places @ self.sides.T >= -_SAME).all(axis=-1)
         if not inside.any():
-            # The cell is half of the sphere and the point its antipole: all of the rim is nearest.
+            # The domain is half of the sphere and the point its antipole: all of the rim is nearest.
             return float(np.pi / 2)
         return float(self.geometry.distance(point, places[inside]).min())
 
 
-def _generators(geometry: Geometry, signature: Signature) -> Floats:
+def _generators(geometry: Geometry, signature: ConwaySymbol) -> Floats:
     """An isometry for every letter of `word_of(signature)`, (k, 3, 3), that its relations hold for."""
     cones, corners = signature.cones, signature.mirrors[0] if signature.mirrors else ()
     if signature.crosscaps:

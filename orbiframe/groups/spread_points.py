@@ -17,8 +17,11 @@ _SAMPLES = 30  # random points per site, of which sites are chosen
 
 
 @dataclass(frozen=True, eq=False)
-class CellSites:
-    """Points spread evenly over X/H. points: (count, 3), in the cell; covering: how far X/H goes from them, about."""
+class SpreadPoints:
+    """Points spread evenly over X/H.
+
+    points: (count, 3), in the fundamental polygon; covering: how far X/H goes from them, about.
+    """
 
     points: Floats
     covering: float
@@ -29,8 +32,8 @@ class CellSites:
         return Points(np.zeros(len(self.points), dtype=np.intp), self.points)
 
 
-def sites_of_cell(group: Group, count: int, seed: int = 0) -> CellSites:
-    """`count` points of the cell of a group, each the farthest on X/H from those before it among random points.
+def spread_over(group: Group, count: int, seed: int = 0) -> SpreadPoints:
+    """`count` points of the polygon of a group, each the farthest on X/H from those before it among random points.
 
     Distances are the least over the images of a site, so that sites keep apart from their own images as well: those of
     a site near a mirror or a cone point are near to it. Raises GeometryError for a count that is not positive.
@@ -44,12 +47,12 @@ def sites_of_cell(group: Group, count: int, seed: int = 0) -> CellSites:
         images = group.geometry.settle(group.geometry.act(tiles, samples[chosen[-1]]))
         gap = np.minimum(gap, group.geometry.distance(samples[:, None], images).min(axis=1))
         if len(chosen) == count:
-            return CellSites(samples[chosen], float(gap.max()))
+            return SpreadPoints(samples[chosen], float(gap.max()))
         chosen.append(int(gap.argmax()))
 
 
 def _random_points(group: Group, count: int, seed: int) -> Floats:
-    """Points of the cell: uniform in area over the disc about it, and moved into it."""
+    """Points of the polygon: uniform in area over the disc about it, and moved into it."""
     rng, k = np.random.default_rng(seed), group.geometry.curvature
     radius = float(group.atlas().radius[0])
     half = (np.sin, np.asarray, np.sinh)[1 - k](radius / 2) * np.sqrt(rng.random(count))
@@ -58,6 +61,6 @@ def _random_points(group: Group, count: int, seed: int) -> Floats:
 
 
 def _far(group: Group) -> float:
-    """A disc that meets every tile with the image of a site nearest to a point of the cell."""
+    """A disc that meets every tile with the image of a site nearest to a point of the polygon."""
     reach = 2 * float(group.atlas().radius[0])
     return float(min(np.pi, reach)) if group.geometry.curvature > 0 else reach

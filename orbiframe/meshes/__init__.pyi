@@ -11,6 +11,7 @@ from .edge_paths import (
     edge_graph as edge_graph,
     farthest_points as farthest_points,
     joining_edges as joining_edges,
+    outermost_vertex as outermost_vertex,
 )
 from .face_diagonals import outline as outline, triangulated as triangulated
 from .fans import fan_labels as fan_labels

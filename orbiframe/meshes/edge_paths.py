@@ -6,9 +6,9 @@ import heapq
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from orbiframe.compiled.decorator import compiled
 from orbiframe.meshes.polyhedron import Polyhedron
 
 Floats = NDArray[np.float64]
@@ -89,6 +89,12 @@ def farthest_points(graph: Graph, count: int, *, first: int = 0, radius: float =
     return Spacing(*_farthest(graph.start, graph.neighbour, graph.length, count, first, radius))
 
 
+def outermost_vertex(polyhedron: Polyhedron) -> int:
+    """The vertex farthest from the mean of all vertices: a tip, where farthest points may well begin."""
+    x = polyhedron.vertices
+    return int(np.argmax(np.linalg.norm(x - x.mean(axis=0), axis=1)))
+
+
 def covering_points(graph: Graph, radius: float) -> Ints:
     """Vertices at least `radius` from each other, with all other vertices nearer than that to one of them.
 
@@ -114,19 +120,35 @@ def joining_edges(count: int, tail: Ints, head: Ints) -> Bools:
 def curve_order(x: Floats) -> Ints:
     """Points of X in one frame, (n, 3), sorted along a space-filling curve, so that neighbours in the list are near.
 
-    Morton's curve in (x1, x2) on a grid of 2^31 by 2^31 cells over the points, one half of S^2 after the other.
+    Morton's curve in (x1, x2) on a grid of 2^31 by 2^31 squares over the points, one half of S^2 after the other.
     """
     if len(x) == 0:
         return np.zeros(0, dtype=np.intp)
     plane = x[:, 1:] - x[:, 1:].min(axis=0)
-    cell = (plane * ((2**31 - 1) / (plane.max() or 1.0))).astype(np.uint64)
+    square = (plane * ((2**31 - 1) / (plane.max() or 1.0))).astype(np.uint64)
     for shift, mask in _SPREAD_BITS:
-        cell = (cell | cell << np.uint64(shift)) & np.uint64(mask)
+        square = (square | square << np.uint64(shift)) & np.uint64(mask)
     half = (x[:, 0] < 0).astype(np.uint64) << np.uint64(62)
-    return np.argsort(cell[:, 0] | cell[:, 1] << np.uint64(1) | half, kind="stable")
+    return np.argsort(square[:, 0] | square[:, 1] << np.uint64(1) | half, kind="stable")
 
 
-@njit(cache=True)
+@compiled
+def _claim(start, neighbour, length, vertex, number, distance, owner):  # type: ignore[no-untyped-def]
+    """Give a vertex all vertices that are nearer to it than they are now: their distance and owner."""
+    distance[vertex], owner[vertex] = 0.0, number
+    queue = [(0.0, vertex)]
+    while queue:
+        near, i = heapq.heappop(queue)
+        if near > distance[i]:
+            continue
+        for k in range(start[i], start[i + 1]):
+            j, far = neighbour[k], near + length[k]
+            if far < distance[j]:
+                distance[j], owner[j] = far, number
+                heapq.heappush(queue, (far, j))
+
+
+@compiled
 def _farthest(start, neighbour, length, count, first, radius):  # type: ignore[no-untyped-def]
     size = len(start) - 1
     distance, owner = np.full(size, np.inf), np.full(size, -1)
@@ -136,17 +158,7 @@ def _farthest(start, neighbour, length, count, first, radius):  # type: ignore[n
     found, vertex = 0, first
     while found < len(chosen):
         chosen[found] = vertex
-        distance[vertex], owner[vertex] = 0.0, found
-        queue = [(0.0, vertex)]
-        while queue:
-            near, i = heapq.heappop(queue)
-            if near > distance[i]:
-                continue
-            for k in range(start[i], start[i + 1]):
-                j, far = neighbour[k], near + length[k]
-                if far < distance[j]:
-                    distance[j], owner[j] = far, found
-                    heapq.heappush(queue, (far, j))
+        _claim(start, neighbour, length, vertex, found, distance, owner)
         found += 1
         top, vertex = waiting[0]
         while -top != distance[vertex]:
@@ -157,47 +169,40 @@ def _farthest(start, neighbour, length, count, first, radius):  # type: ignore[n
     return chosen[:found].copy(), owner, distance
 
 
-@njit(cache=True)
+@compiled
 def _covering(start, neighbour, length, radius):  # type: ignore[no-untyped-def]
-    distance = np.full(len(start) - 1, radius)
+    distance, owner = np.full(len(start) - 1, radius), np.full(len(start) - 1, -1)
     chosen = [np.intp(0) for _ in range(0)]
     for vertex in range(len(start) - 1):
         if distance[vertex] < radius:
             continue
         chosen.append(np.intp(vertex))
-        distance[vertex] = 0.0
-        queue = [(0.0, vertex)]
-        while queue:
-            near, i = heapq.heappop(queue)
-            if near > distance[i]:
-                continue
-            for k in range(start[i], start[i + 1]):
-                j, far = neighbour[k], near + length[k]
-                if far < distance[j]:
-                    distance[j] = far
-                    heapq.heappush(queue, (far, j))
+        _claim(start, neighbour, length, vertex, vertex, distance, owner)
     return np.array(chosen)
 
 
-@njit(cache=True)
+@compiled
+def _top(above, i):  # type: ignore[no-untyped-def]
+    """The first of the part that i belongs to; the way there becomes half as long."""
+    while above[i] != i:
+        above[i] = above[above[i]]
+        i = above[i]
+    return i
+
+
+@compiled
 def _joining(count, tail, head):  # type: ignore[no-untyped-def]
     above = np.arange(count)
     joins = np.zeros(len(tail), dtype=np.bool_)
     for edge in range(len(tail)):
-        i, j = tail[edge], head[edge]
-        while above[i] != i:
-            above[i] = above[above[i]]
-            i = above[i]
-        while above[j] != j:
-            above[j] = above[above[j]]
-            j = above[j]
+        i, j = _top(above, tail[edge]), _top(above, head[edge])
         if i != j:
             above[max(i, j)] = min(i, j)
             joins[edge] = True
     return joins
 
 
-@njit(cache=True)
+@compiled
 def _forest(start, neighbour, length, sources):  # type: ignore[no-untyped-def]
     size = len(start) - 1
     distance, owner = np.full(size, np.inf), np.full(size, -1)

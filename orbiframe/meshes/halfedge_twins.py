@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from numba import njit
 from numpy import empty, full, int32, zeros
 
+from orbiframe.compiled.decorator import compiled
 
-@njit(cache=True)
+
+@compiled
 def find_twins(vertex_count, offsets, tail, twin, same):  # type: ignore[no-untyped-def]
     """Enter the twin of each halfedge, and whether it runs the same way, where exactly two have the same two ends."""
     start, far, half = _by_lower_end(vertex_count, offsets, tail)
@@ -27,7 +28,7 @@ def find_twins(vertex_count, offsets, tail, twin, same):  # type: ignore[no-unty
                 same[h] = tail[h] == tail[twin[h]]
 
 
-@njit(cache=True)
+@compiled
 def _by_lower_end(vertex_count, offsets, tail):  # type: ignore[no-untyped-def]
     """Halfedges in order of the lower of their ends: where each vertex starts, the other end, the halfedge."""
     start = zeros(vertex_count + 2, int32)

@@ -22,7 +22,7 @@ LARGE = 2**20
 
 @dataclass(frozen=True, eq=False)
 class Polyhedron:
-    """A cell complex of polygons in space, closed or not, orientable or not.
+    """A complex of polygons in space, closed or not, orientable or not.
 
     Halfedge h is corner h of the list of all face corners, face by face, and runs from `tail[h]` to the tail of the
     next corner of its face. Two halfedges that are glued are twins; the side flag `same[h]` says that the twin runs

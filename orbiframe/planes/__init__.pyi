@@ -2,5 +2,5 @@
 
 from .geometry import Geometry as Geometry
 from .motion import Motion as Motion
-from .precise_isometry import Spin as Spin
+from .precise_isometry import PreciseIsometry as PreciseIsometry
 from .quadrature import triangle_points as triangle_points, triangle_rule as triangle_rule

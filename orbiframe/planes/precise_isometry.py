@@ -1,4 +1,4 @@
-"""Spin: isometries of the three planes as pairs of complex numbers, exact to eps e^d where matrices lose eps e^(2d)."""
+"""Precise isometries: pairs of complex numbers, exact to eps e^d where 3 x 3 matrices lose eps e^(2d)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _HALF_TURN = np.diag([-1.0, 1.0, -1.0])
 
 
 @dataclass(frozen=True, eq=False)
-class Spin:
+class PreciseIsometry:
     """Isometries of the plane of curvature K in its conformal model: z -> (a w + b) / (conj a - K conj b w).
 
     w is z, or conj z where the isometry reverses orientation; |a|^2 + K |b|^2 = 1, and (-a, -b) is the same isometry.
@@ -30,7 +30,7 @@ class Spin:
     reverses: Bools
 
     @classmethod
-    def translation(cls, curvature: int, x: ArrayLike) -> Spin:
+    def translation(cls, curvature: int, x: ArrayLike) -> PreciseIsometry:
         """The translations along geodesics that take the origin to points x (..., 3) of X, with x0 > -1 in S^2."""
         points = np.asarray(x, dtype=np.longdouble)
         plane = points[..., 1] + 1j * points[..., 2]
@@ -42,13 +42,13 @@ class Spin:
         return cls(curvature, a.astype(np.clongdouble), plane / (2 * a), np.zeros(a.shape, dtype=np.bool_))
 
     @classmethod
-    def rotation(cls, curvature: int, angle: ArrayLike, reverses: ArrayLike = False) -> Spin:
+    def rotation(cls, curvature: int, angle: ArrayLike, reverses: ArrayLike = False) -> PreciseIsometry:
         """Rotations about the origin, after the reflection in the x1-axis where `reverses` says so; both (...)."""
         turn, mirror = np.broadcast_arrays(np.asarray(angle, dtype=np.longdouble), np.asarray(reverses, dtype=np.bool_))
         return cls(curvature, np.exp(0.5j * turn), np.zeros(turn.shape, dtype=np.clongdouble), mirror)
 
     @classmethod
-    def of_matrix(cls, curvature: int, g: ArrayLike) -> Spin:
+    def of_matrix(cls, curvature: int, g: ArrayLike) -> PreciseIsometry:
         """Isometries given as matrices (..., 3, 3)."""
         matrix = np.asarray(g, dtype=np.longdouble)
         if curvature > 0 and (far := matrix[..., 0, 0] < 0).any():
@@ -63,27 +63,27 @@ class Spin:
         return move @ cls.rotation(curvature, np.arctan2(rest[..., 2, 1], rest[..., 1, 1]), reverses)
 
     @classmethod
-    def joined(cls, parts: Sequence[Spin]) -> Spin:
+    def joined(cls, parts: Sequence[PreciseIsometry]) -> PreciseIsometry:
         """Isometries of one plane in one array, (n,), one part (m,) after the other."""
         a, b, reverses = (np.concatenate([getattr(part, name) for part in parts]) for name in ("a", "b", "reverses"))
         return cls(parts[0].curvature, a, b, reverses)
 
-    def __matmul__(self, other: Spin) -> Spin:
+    def __matmul__(self, other: PreciseIsometry) -> PreciseIsometry:
         """The other isometry first, then this one; leading axes broadcast."""
         a = np.where(self.reverses, other.a.conj(), other.a)
         b = np.where(self.reverses, other.b.conj(), other.b)
         product = self.a * a - self.curvature * self.b * b.conj(), self.a * b + self.b * a.conj()
-        return Spin(self.curvature, *product, self.reverses ^ other.reverses)
+        return PreciseIsometry(self.curvature, *product, self.reverses ^ other.reverses)
 
-    def __getitem__(self, index: int | slice | NDArray[np.intp] | NDArray[np.bool_]) -> Spin:
+    def __getitem__(self, index: int | slice | NDArray[np.intp] | NDArray[np.bool_]) -> PreciseIsometry:
         """Some of the isometries."""
-        return Spin(self.curvature, self.a[index], self.b[index], self.reverses[index])
+        return PreciseIsometry(self.curvature, self.a[index], self.b[index], self.reverses[index])
 
     @property
-    def inverse(self) -> Spin:
+    def inverse(self) -> PreciseIsometry:
         """The inverse isometries."""
         a = np.where(self.reverses, self.a, self.a.conj())
-        return Spin(self.curvature, a, -np.where(self.reverses, self.b.conj(), self.b), self.reverses)
+        return PreciseIsometry(self.curvature, a, -np.where(self.reverses, self.b.conj(), self.b), self.reverses)
 
     @property
     def direction(self) -> NDArray[np.longdouble]:

@@ -9,7 +9,7 @@ from .bernstein import (
     symmetric_power as symmetric_power,
 )
 from .element_basis import ElementBasis as ElementBasis
-from .galerkin import bending as bending, integrals as integrals, mass as mass, stiffness as stiffness
+from .galerkin import integrals as integrals, mass as mass, stiffness as stiffness
 from .powell_sabin_split import PowellSabinSplit as PowellSabinSplit
 from .shared_edges import (
     along_reference as along_reference,

@@ -6,9 +6,9 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from orbiframe.compiled.decorator import compiled
 from orbiframe.splines.bernstein import coefficient_count, exponent_number, exponents, multinomials
 
 Floats = NDArray[np.float64]
@@ -39,12 +39,12 @@ def polynomial_tables(degree: int) -> Tables:
     return Tables(factors, np.array(raised, dtype=np.intp), counts)
 
 
-@njit(cache=True, inline="always")
+@compiled(inline=True)
 def _height(inverse, f, m, i, x0, x1, x2):  # type: ignore[no-untyped-def]
     return inverse[f, m, i, 0] * x0 + inverse[f, m, i, 1] * x1 + inverse[f, m, i, 2] * x2
 
 
-@njit(cache=True, inline="always")
+@compiled(inline=True)
 def micro_heights(inverse, f, m, x0, x1, x2):  # type: ignore[no-untyped-def]
     """The coordinates of a vector in micro triangle m of triangle f."""
     return (
@@ -54,8 +54,8 @@ def micro_heights(inverse, f, m, x0, x1, x2):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True, error_model="numpy")
-def micro_cell(inverse, f, x0, x1, x2):  # type: ignore[no-untyped-def]
+@compiled(may_divide_by_zero=True)
+def micro_triangle(inverse, f, x0, x1, x2):  # type: ignore[no-untyped-def]
     """The micro triangle that holds a point, or the one it is least outside of."""
     best, least = 0, -np.inf
     for m in range(inverse.shape[1]):
@@ -68,8 +68,8 @@ def micro_cell(inverse, f, x0, x1, x2):  # type: ignore[no-untyped-def]
     return best
 
 
-@njit(cache=True, error_model="numpy")
-def fan_cell(fan, f, a, b, c):  # type: ignore[no-untyped-def]
+@compiled(may_divide_by_zero=True)
+def fan_triangle(fan, f, a, b, c):  # type: ignore[no-untyped-def]
     """The micro triangle of a fan at coordinates in the whole triangle: edge e, or 2 e and 2 e + 1 beside its R."""
     # Written as choices of numbers, not of ways: a processor cannot foretell in which micro triangle the next point is.
     r0, r1, r2 = a * fan[f, 0], b * fan[f, 1], c * fan[f, 2]
@@ -88,10 +88,10 @@ def fan_cell(fan, f, a, b, c):  # type: ignore[no-untyped-def]
     return 2 * edge + (0 if early else 1), own - ahead * (mu if early else nu), ahead, height
 
 
-@njit(cache=True, error_model="numpy")
-def _fan_coordinates(fan, f, cell, a, b, c):  # type: ignore[no-untyped-def]
+@compiled(may_divide_by_zero=True)
+def _fan_coordinates(fan, f, micro, a, b, c):  # type: ignore[no-untyped-def]
     """Coordinates in a micro triangle of a fan from those in the whole triangle; linear in them."""
-    edge = cell if fan.shape[1] == 3 else cell // 2
+    edge = micro if fan.shape[1] == 3 else micro // 2
     if edge == 0:
         height, start, end = c * fan[f, 2], a - c * fan[f, 2] / fan[f, 0], b - c * fan[f, 2] / fan[f, 1]
     elif edge == 1:
@@ -101,12 +101,12 @@ def _fan_coordinates(fan, f, cell, a, b, c):  # type: ignore[no-untyped-def]
     if fan.shape[1] == 3:
         return start, end, height
     mu, nu = fan[f, 3 + 2 * edge], fan[f, 4 + 2 * edge]
-    if cell % 2 == 0:
+    if micro % 2 == 0:
         return start - end / nu * mu, end / nu, height
     return end - start / mu * nu, start / mu, height
 
 
-@njit(cache=True)
+@compiled
 def _values(tables, level, degree, point, powers, out):  # type: ignore[no-untyped-def]
     """The Bernstein polynomials of degree d - level at a point, by tabulated powers."""
     top = degree - level
@@ -123,17 +123,18 @@ def _values(tables, level, degree, point, powers, out):  # type: ignore[no-untyp
             a += 1
 
 
-@njit(cache=True)
+@compiled
 def _raise_degree(tables, level, factor, direction, lower, out):  # type: ignore[no-untyped-def]
     """Derivative by a direction: from polynomials of degree d - level - 1 to those of degree d - level."""
-    out[: tables.counts[level]] = 0.0
+    for a in range(tables.counts[level]):
+        out[a] = 0.0
     for a in range(tables.counts[level + 1]):
         value = factor * lower[a]
         for i in range(3):
             out[tables.raised[a, i]] += direction[i] * value
 
 
-@njit(cache=True)
+@compiled
 def _jet(shape, tables, lam, kinds, work, powers, jet):  # type: ignore[no-untyped-def]
     """Values and covariant derivatives of all Bernstein polynomials at one point: jet (kinds, n).
 
@@ -146,7 +147,9 @@ def _jet(shape, tables, lam, kinds, work, powers, jet):  # type: ignore[no-untyp
     _values(tables, 0, degree, lam[0], powers, jet[0])
     if kinds == 1:
         return
-    jet[1:kinds] = 0.0
+    for kind in range(1, kinds):
+        for a in range(count):
+            jet[kind, a] = 0.0
     if degree >= 1:
         _values(tables, 1, degree, lam[0], powers, work[0])
         for u in range(2):
@@ -177,7 +180,7 @@ def _jet(shape, tables, lam, kinds, work, powers, jet):  # type: ignore[no-untyp
                 jet[6 + 3 * w + kind, a] -= curvature * ((degree - 1) * mixed + degree * (u == v) * jet[1 + w, a])
 
 
-@njit(cache=True)
+@compiled
 def fill_rows(place, matrix, tables, row_start, values):  # type: ignore[no-untyped-def]
     """The rows of design matrices: the Bernstein jets at every point times the rows of C of its micro triangle.
 
@@ -185,15 +188,15 @@ def fill_rows(place, matrix, tables, row_start, values):  # type: ignore[no-unty
     (curvature, degree); matrix: row starts, values and places in the rows of the result of the nonzeros of C;
     row_start: (points + 1,); values: (kinds, nonzeros), zero before.
     """
-    (order, face, columns), inverse, fan, cells, shape = place
+    (order, face, columns), inverse, fan, micro_count, shape = place
     start, data, slot = matrix
     kinds, count = len(values), tables.counts[0]
     work, powers = np.empty((3, count)), np.empty((3, shape[1] + 1))
     jet, lam = np.empty((kinds, count)), np.empty((3, 3))
     for n in range(len(order)):
-        cell = _coordinates(inverse, fan, face[n], columns, n, kinds, lam)
+        micro = _coordinates(inverse, fan, face[n], columns, n, kinds, lam)
         _jet(shape, tables, lam, kinds, work, powers, jet)
-        row = (face[n] * cells + cell) * count
+        row = (face[n] * micro_count + micro) * count
         for a in range(count):
             for k in range(start[row + a], start[row + a + 1]):
                 where = row_start[order[n]] + slot[k]
@@ -201,7 +204,7 @@ def fill_rows(place, matrix, tables, row_start, values):  # type: ignore[no-unty
                     values[kind, where] += jet[kind, a] * data[k]
 
 
-@njit(cache=True)
+@compiled
 def _coordinates(inverse, fan, f, columns, n, kinds, lam):  # type: ignore[no-untyped-def]
     """The micro triangle of point n; rows of `lam`: the coordinates of the point and of its frame vectors.
 
@@ -209,23 +212,23 @@ def _coordinates(inverse, fan, f, columns, n, kinds, lam):  # type: ignore[no-un
     """
     whole = fan.shape[1] > 0
     x0, x1, x2 = columns[n, 0, 0], columns[n, 1, 0], columns[n, 2, 0]
-    cell = 0 if whole else micro_cell(inverse, f, x0, x1, x2)
-    a, b, c = micro_heights(inverse, f, cell, x0, x1, x2)
+    micro = 0 if whole else micro_triangle(inverse, f, x0, x1, x2)
+    a, b, c = micro_heights(inverse, f, micro, x0, x1, x2)
     if whole:
-        cell, a, b, c = fan_cell(fan, f, a, b, c)
+        micro, a, b, c = fan_triangle(fan, f, a, b, c)
     lam[0, 0], lam[0, 1], lam[0, 2] = a, b, c
     if kinds > 1:
         for k in (1, 2):
             a, b, c = micro_heights(
-                inverse, f, 0 if whole else cell, columns[n, 0, k], columns[n, 1, k], columns[n, 2, k]
+                inverse, f, 0 if whole else micro, columns[n, 0, k], columns[n, 1, k], columns[n, 2, k]
             )
             if whole:
-                a, b, c = _fan_coordinates(fan, f, cell, a, b, c)
+                a, b, c = _fan_coordinates(fan, f, micro, a, b, c)
             lam[k, 0], lam[k, 1], lam[k, 2] = a, b, c
-    return cell
+    return micro
 
 
-@njit(cache=True)
+@compiled
 def evaluate_nets(place, nets, tables, values):  # type: ignore[no-untyped-def]
     """Jets of functions with given Bernstein coefficients: nets (F, m, n, q), values (kinds, points, q)."""
     (order, face, columns), inverse, fan, _, shape = place
@@ -233,17 +236,28 @@ def evaluate_nets(place, nets, tables, values):  # type: ignore[no-untyped-def]
     work, powers = np.empty((3, count)), np.empty((3, shape[1] + 1))
     jet, lam = np.empty((kinds, count)), np.empty((3, 3))
     for n in range(len(order)):
-        cell = _coordinates(inverse, fan, face[n], columns, n, kinds, lam)
+        micro = _coordinates(inverse, fan, face[n], columns, n, kinds, lam)
         _jet(shape, tables, lam, kinds, work, powers, jet)
         for kind in range(kinds):
             for q in range(width):
                 total = 0.0
                 for a in range(count):
-                    total += jet[kind, a] * nets[face[n], cell, a, q]
+                    total += jet[kind, a] * nets[face[n], micro, a, q]
                 values[kind, order[n], q] = total
 
 
-@njit(cache=True)
+@compiled(arrays=False)
+def _sort(values, begin, end):  # type: ignore[no-untyped-def]
+    """Sort a short piece of an array by insertion."""
+    for k in range(begin + 1, end):
+        value, place = values[k], k
+        while place > begin and values[place - 1] > value:
+            values[place] = values[place - 1]
+            place -= 1
+        values[place] = value
+
+
+@compiled
 def unknowns_of_triangles(start, indices, rows, size):  # type: ignore[no-untyped-def]
     """The unknowns that the rows of C of each triangle mention: (F + 1,) starts, columns, places of all nonzeros.
 
@@ -262,10 +276,9 @@ def unknowns_of_triangles(start, indices, rows, size):  # type: ignore[no-untype
                 seen[indices[k]] = f
                 column[count] = indices[k]
                 count += 1
-        own = column[first[f] : count]
-        own.sort()
-        for k in range(len(own)):
-            number[own[k]] = k
+        _sort(column, first[f], count)
+        for k in range(first[f], count):
+            number[column[k]] = k - first[f]
         for k in range(low, high):
             place[k] = number[indices[k]]
         first[f + 1] = count

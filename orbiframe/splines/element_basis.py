@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from orbiframe.functions.basis import JET_KINDS, DifferentiableBasis
+from orbiframe.functions.basis import JET_KINDS, PiecewiseBasis
 from orbiframe.functions.jet_quotient import divide_jets
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.splines.bernstein import coefficient_count
@@ -24,15 +24,15 @@ Ints = NDArray[np.intp]
 _BLOCK = 1024  # points that are located, then evaluated
 
 
-class ElementBasis(DifferentiableBasis):
+class ElementBasis(PiecewiseBasis):
     """Functions that are homogeneous polynomials of one degree on every micro triangle of a geodesic triangulation.
 
     A function on X/H is f = F restricted to X, where F is a polynomial in R^3 on the cone over each micro triangle.
     The matrix C takes the unknowns to the Bernstein coefficients of all micro triangles; values, derivatives, scalar
     products and exact patches follow from the corners of the micro triangles, the degree and C alone.
 
-    domain: the triangulation; degree; cells: (F, m, 3, 3), the corners of the micro triangles [triangle, micro, corner,
-    coordinate] in the frame of their triangle, vectors in R^3 that need not lie on X; matrix: C, sparse
+    domain: the triangulation; degree; micro_triangles: (F, m, 3, 3), the corners of the micro triangles [triangle,
+    micro, corner, coordinate] in the frame of their triangle, vectors in R^3 that need not lie on X; matrix: C, sparse
     (F m n, size) with n = (degree + 1)(degree + 2) / 2 (splines: sections 3.2 and 3.3 of the paper).
 
     Constants are no homogeneous polynomials of odd degree in S^2 and H^2. There the functions are divided by W, the
@@ -44,7 +44,7 @@ class ElementBasis(DifferentiableBasis):
         self,
         domain: GeodesicTriangulation,
         degree: int,
-        cells: Floats,
+        micro_triangles: Floats,
         matrix: csr_array,
         smoothness: float,
         *,
@@ -53,19 +53,15 @@ class ElementBasis(DifferentiableBasis):
         self.orbifold = domain.orbifold
         self.domain = domain
         self.degree = degree
-        self.cells = cells
+        self.micro_triangles = micro_triangles
         self.matrix = matrix
         self.size = matrix.shape[1]
         self.smoothness = smoothness
         divided = rational and degree % 2 == 1 and domain.geometry.curvature != 0
         self.weights = nearest_to_one(self) if divided else None
 
-    def design_matrix(self, points: Points) -> csr_array:
-        """The values of all functions at n points, sparse (n, size)."""
-        return self.jet_matrices(points, 0)[0]
-
     def jet_matrices(self, points: Points, order: int) -> list[csr_array]:
-        """See `DifferentiableBasis`."""
+        """See `PiecewiseBasis`."""
         location = self.locator.locate(points, frames=order > 0)
         face = np.empty_like(location.face)
         face[location.order] = location.face
@@ -84,7 +80,9 @@ class ElementBasis(DifferentiableBasis):
 
     def net(self, coefficients: Floats) -> Floats:
         """The Bernstein coefficients of q functions from their coefficients (size, q): (F, m, n, q)."""
-        return np.asarray(self.matrix @ coefficients).reshape(*self.cells.shape[:2], -1, coefficients.shape[1])
+        return np.asarray(self.matrix @ coefficients).reshape(
+            *self.micro_triangles.shape[:2], -1, coefficients.shape[1]
+        )
 
     def values(self, points: Points, coefficients: Floats) -> Floats:
         """See `Basis`; evaluated from the Bernstein coefficients, without a design matrix."""
@@ -113,7 +111,7 @@ class ElementBasis(DifferentiableBasis):
         return values
 
     def jets(self, points: Points, coefficients: Floats, order: int) -> Floats:
-        """See `DifferentiableBasis`; evaluated from the Bernstein coefficients, without a design matrix."""
+        """See `PiecewiseBasis`; evaluated from the Bernstein coefficients, without a design matrix."""
         location = self.locator.locate(points, frames=order > 0)
         if self.weights is None:
             return self._polynomial_jets(location, coefficients, order)
@@ -141,19 +139,23 @@ class ElementBasis(DifferentiableBasis):
     @cached_property
     def _search(self) -> tuple[Floats, Floats, int]:
         """How to find micro triangles: matrices to barycentric coordinates, fans (see `_fans`), how many there are."""
-        fans = _fans(self.domain, self.cells)
-        cells = self.domain.corners[:, None] if fans.shape[1] else self.cells
-        return np.ascontiguousarray(np.linalg.inv(np.swapaxes(cells, -1, -2))), fans, self.cells.shape[1]
+        fans = _fans(self.domain, self.micro_triangles)
+        micro_triangles = self.domain.corners[:, None] if fans.shape[1] else self.micro_triangles
+        return (
+            np.ascontiguousarray(np.linalg.inv(np.swapaxes(micro_triangles, -1, -2))),
+            fans,
+            self.micro_triangles.shape[1],
+        )
 
     @cached_property
     def _pattern(self) -> tuple[Ints, Ints, Ints]:
         """The unknowns that matter on each triangle: start (F + 1,), columns, and for every nonzero of C its place."""
-        rows = self.cells.shape[1] * coefficient_count(self.degree)
+        rows = self.micro_triangles.shape[1] * coefficient_count(self.degree)
         start, column, place = unknowns_of_triangles(self.matrix.indptr, self.matrix.indices, rows, self.size)
         return start, column, place
 
 
-def _fans(domain: GeodesicTriangulation, cells: Floats) -> Floats:
+def _fans(domain: GeodesicTriangulation, micro_triangles: Floats) -> Floats:
     """Splits that are fans about a point Z, as numbers: (F, 3) or (F, 9), and (F, 0) for any other split.
 
     Three micro triangles (v_c, v_(c + 1), Z), or six: 2 c and 2 c + 1 are (v_c, R_c, Z) and (v_(c + 1), R_c, Z). Three
@@ -161,16 +163,20 @@ def _fans(domain: GeodesicTriangulation, cells: Floats) -> Floats:
     """
     x = domain.corners
     ends = np.stack([x, np.roll(x, -1, axis=1)], axis=2).reshape(-1, 6, 3)
-    six, three = cells.shape[1] == 6, cells.shape[1] == 3
+    six, three = micro_triangles.shape[1] == 6, micro_triangles.shape[1] == 3
     if not (
-        (six and np.array_equal(cells[:, :, 0], ends))
-        or (three and np.array_equal(cells[:, :, 0], x) and np.array_equal(cells[:, :, 1], ends[:, 1::2]))
+        (six and np.array_equal(micro_triangles[:, :, 0], ends))
+        or (
+            three
+            and np.array_equal(micro_triangles[:, :, 0], x)
+            and np.array_equal(micro_triangles[:, :, 1], ends[:, 1::2])
+        )
     ):
-        return np.zeros((len(cells), 0))
+        return np.zeros((len(micro_triangles), 0))
     inverse = np.linalg.inv(np.swapaxes(x, 1, 2))
-    z = np.einsum("fij,fj->fi", inverse, cells[:, 0, 2])
+    z = np.einsum("fij,fj->fi", inverse, micro_triangles[:, 0, 2])
     if three:
         return np.ascontiguousarray(1 / z)
-    r = np.einsum("fij,fcj->fci", inverse, cells[:, ::2, 1])
+    r = np.einsum("fij,fcj->fci", inverse, micro_triangles[:, ::2, 1])
     share = np.stack([r[:, range(3), range(3)], r[:, range(3), (1, 2, 0)]], axis=2)
     return np.ascontiguousarray(np.concatenate([1 / z, share.reshape(-1, 6)], axis=1))

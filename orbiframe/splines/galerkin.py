@@ -11,7 +11,7 @@ from scipy.sparse import bsr_array, csc_array, csr_array
 from scipy.sparse.linalg import splu
 
 from orbiframe.planes.quadrature import triangle_rule
-from orbiframe.splines.bernstein import bernstein_gradients, bernstein_hessians, bernstein_values, coefficient_count
+from orbiframe.splines.bernstein import bernstein_gradients, bernstein_values, coefficient_count
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
@@ -27,7 +27,7 @@ class PiecewisePolynomials(Protocol):
 
     domain: GeodesicTriangulation
     degree: int
-    cells: Floats
+    micro_triangles: Floats
     matrix: csr_array
 
 
@@ -65,22 +65,6 @@ def stiffness(space: PiecewisePolynomials) -> csr_array:
     return _assembled(space, local)
 
 
-def bending(space: PiecewisePolynomials) -> csr_array:
-    """The integrals of (Delta b_i)(Delta b_j) over X/H (paper, 3.4): Delta f = sum Q_ij F_ij - K d (d + 1) F on X.
-
-    For functions in C^1; the constants are its kernel where the space contains them.
-    """
-    degree, curvature = space.degree, space.domain.geometry.curvature
-
-    def local(rule: _Rule, tables: _Tables) -> Floats:
-        bends = np.einsum("nij,qija->nqa", rule.metric, tables.hessians)
-        laplacian = rule.shrink[..., None] ** (degree - 2) * bends
-        laplacian -= curvature * degree * (degree + 1) * rule.shrink[..., None] ** degree * tables.values
-        return np.asarray(np.swapaxes(laplacian, 1, 2) @ (rule.weights[..., None] * laplacian))
-
-    return _assembled(space, local)
-
-
 def integrals(space: PiecewisePolynomials) -> Floats:
     """The integral of every function over X/H, (size,)."""
     parts = [
@@ -96,11 +80,10 @@ def nearest_to_one(space: PiecewisePolynomials) -> Floats:
 
 
 class _Tables(NamedTuple):
-    """Bernstein polynomials at the points of the rule: values (q, a), gradients (q, 3, a), Hessians (q, 3, 3, a)."""
+    """Bernstein polynomials at the points of the rule: values (q, a) and gradients (q, 3, a)."""
 
     values: Floats
     gradients: Floats
-    hessians: Floats
 
 
 def _points(space: PiecewisePolynomials) -> int:
@@ -108,7 +91,7 @@ def _points(space: PiecewisePolynomials) -> int:
     geometry = space.domain.geometry
     if geometry.curvature == 0:
         return space.degree + 1
-    flat = space.cells.reshape(-1, 3, 3)
+    flat = space.micro_triangles.reshape(-1, 3, 3)
     corners = geometry.project(flat)
     diameter = float(geometry.distance(corners, np.roll(corners, -1, axis=1)).max())
     return space.degree + next(more for bound, more in _MORE_POINTS if diameter <= bound)
@@ -117,15 +100,14 @@ def _points(space: PiecewisePolynomials) -> int:
 def _chunks(space: PiecewisePolynomials, points: int) -> Iterator[tuple[_Rule, _Tables]]:
     """The rule on the micro triangles, some at a time, with the tables that all share."""
     barycentric, weights = triangle_rule(points)
-    tables = _Tables(
-        bernstein_values(space.degree, barycentric),
-        bernstein_gradients(space.degree, barycentric),
-        bernstein_hessians(space.degree, barycentric),
-    )
-    cells = space.cells.reshape(-1, 3, 3)
+    tables = _Tables(bernstein_values(space.degree, barycentric), bernstein_gradients(space.degree, barycentric))
+    micro_triangles = space.micro_triangles.reshape(-1, 3, 3)
     at_once = max(_CHUNK // (len(weights) * coefficient_count(space.degree)), 1)
-    for begin in range(0, len(cells), at_once):
-        yield _rule(space.domain.geometry.curvature, cells[begin : begin + at_once], barycentric, weights), tables
+    for begin in range(0, len(micro_triangles), at_once):
+        yield (
+            _rule(space.domain.geometry.curvature, micro_triangles[begin : begin + at_once], barycentric, weights),
+            tables,
+        )
 
 
 def _rule(curvature: int, corners: Floats, barycentric: Floats, weights: Floats) -> _Rule:

@@ -52,15 +52,15 @@ class PowellSabinSplit:
         return np.asarray(self.share[..., :1] * x + self.share[..., 1:] * np.roll(x, -1, axis=1))
 
     @cached_property
-    def cells(self) -> Floats:
+    def micro_triangles(self) -> Floats:
         """The corners of the micro triangles, (F, 6, 3, 3)."""
         x, z = self.domain.corners, self.incentre
-        cells = np.empty((self.domain.face_count, 6, 3, 3))
+        micro_triangles = np.empty((self.domain.face_count, 6, 3, 3))
         for c in range(3):
-            cells[:, 2 * c, 0], cells[:, 2 * c + 1, 0] = x[:, c], x[:, (c + 1) % 3]
-            cells[:, 2 * c : 2 * c + 2, 1] = self.edge_point[:, c, None]
-        cells[:, :, 2] = z[:, None]
-        return cells
+            micro_triangles[:, 2 * c, 0], micro_triangles[:, 2 * c + 1, 0] = x[:, c], x[:, (c + 1) % 3]
+            micro_triangles[:, 2 * c : 2 * c + 2, 1] = self.edge_point[:, c, None]
+        micro_triangles[:, :, 2] = z[:, None]
+        return micro_triangles
 
     @cached_property
     def around(self) -> Floats:

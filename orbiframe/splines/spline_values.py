@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from orbiframe.splines.bernstein_kernels import fan_cell, micro_cell, micro_heights
-from orbiframe.triangulations.point_location import cell_of, walk
-
-# They make no array, so they need not count who refers to the arrays they are given.
-_bare = njit(cache=True, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
+from orbiframe.compiled.decorator import compiled
+from orbiframe.splines.bernstein_kernels import fan_triangle, micro_heights, micro_triangle
+from orbiframe.triangulations.point_location import square_of, walk
 
 
-@_bare
+@compiled(arrays=False, may_divide_by_zero=True)
 def spline_values(points, grid, steps, split, nets, form, work, values):  # type: ignore[no-untyped-def]
     """Values of functions with given Bernstein coefficients; returns the first point without a triangle, or -1.
 
     points: patches (n,) and x (n, 3); grid and steps: see `Locator`; split: inverses and fans of the micro triangles,
-    see `fan_cell`; nets: (F m, n_d, q); form: the degree, multinomials (n_d,) and whether the last function is W, by
-    which the others are divided; work: room for the micro triangles (b,) and coordinates (b, 3) of a block, for n_d
+    see `fan_triangle`; nets: (F m, n_d, q); form: the degree, multinomials (n_d,) and whether the last function is W,
+    by which the others are divided; work: room for the micro triangles (b,) and coordinates (b, 3) of a block, for n_d
     factors and for powers (3, d + 1); values: (n, q), or (n, q - 1) with W. Each step is a loop of its own over a
     block: while one point waits for memory, or for a branch that could not be foretold, the next ones are under way.
     """
@@ -32,20 +29,20 @@ def spline_values(points, grid, steps, split, nets, form, work, values):  # type
     return -1
 
 
-@_bare
+@compiled(arrays=False, may_divide_by_zero=True)
 def _locate(begin, end, points, grid, steps, split, work):  # type: ignore[no-untyped-def]
     """The micro triangles of a block of points, with the barycentric coordinates in them."""
     patch, x = points
     grid_face, g, half_width = grid
     inverse, twin, across = steps
-    cell_inverse, fan, micro_count = split
+    micro_inverse, fan, micro_count = split
     micro, coordinates = work[0], work[1]
-    sides, cells = grid_face.shape[1], grid_face.shape[2]
+    sides, squares = grid_face.shape[1], grid_face.shape[2]
     for n in range(begin, end):
         p, x0, x1, x2, k = patch[n], x[n, 0], x[n, 1], x[n, 2], n - begin
         if not abs(x0) + abs(x1) + abs(x2) < np.inf:
             return n
-        i, j = cell_of(x0, x1, x2, half_width[p], cells)
+        i, j = square_of(x0, x1, x2, half_width[p], squares)
         s = 1 if sides > 1 and x0 < 0 else 0
         micro[k] = grid_face[p, s, i, j]
         for row in range(3):
@@ -57,8 +54,8 @@ def _locate(begin, end, points, grid, steps, split, work):  # type: ignore[no-un
         if f < 0:
             return begin + k
         if fan.shape[1] == 0:
-            m = micro_cell(cell_inverse, f, y0, y1, y2)
-            a, b, c = micro_heights(cell_inverse, f, m, y0, y1, y2)
+            m = micro_triangle(micro_inverse, f, y0, y1, y2)
+            a, b, c = micro_heights(micro_inverse, f, m, y0, y1, y2)
             micro[k] = f * micro_count + m
         else:
             micro[k] = f
@@ -66,13 +63,13 @@ def _locate(begin, end, points, grid, steps, split, work):  # type: ignore[no-un
     if fan.shape[1] > 0:
         for k in range(end - begin):
             f = micro[k]
-            m, a, b, c = fan_cell(fan, f, coordinates[k, 0], coordinates[k, 1], coordinates[k, 2])
+            m, a, b, c = fan_triangle(fan, f, coordinates[k, 0], coordinates[k, 1], coordinates[k, 2])
             micro[k] = f * micro_count + m
             coordinates[k, 0], coordinates[k, 1], coordinates[k, 2] = a, b, c
     return -1
 
 
-@_bare
+@compiled(arrays=False, may_divide_by_zero=True)
 def _evaluate(begin, end, nets, form, work, values):  # type: ignore[no-untyped-def]
     """The values at a block of points by tabulated powers of their coordinates."""
     degree, multinomials, rational = form

@@ -7,13 +7,13 @@ from abc import abstractmethod
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.functions.basis import DifferentiableBasis
+from orbiframe.functions.basis import PiecewiseBasis
 from orbiframe.orbifolds.flat_lattice import FlatLattice
 
 Floats = NDArray[np.float64]
 
 
-class TensorBasis(DifferentiableBasis):
+class TensorBasis(PiecewiseBasis):
     """A basis that knows the control net of its combinations: sum of P_ij N_i(u) N_j(v) in lattice coordinates.
 
     lattice: the coordinates; degree: in both directions; knots: those of one period, rising, in u and in v. The period

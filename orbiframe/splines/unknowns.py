@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from orbiframe.compiled.decorator import compiled
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
@@ -99,7 +99,7 @@ class Unknowns:
         return matrix
 
 
-@njit(cache=True)
+@compiled
 def _fill_rows(forms, kinds, kind, order, numbers, data, column):  # type: ignore[no-untyped-def]
     """The entries row by row, each row in the order of the numbers of its unknowns.
 

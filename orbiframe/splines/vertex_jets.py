@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from orbiframe.compiled.decorator import compiled
 from orbiframe.splines.bernstein import coefficient_count, symmetric_power
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 
@@ -103,7 +103,7 @@ def enclosing_triangles(domain: GeodesicTriangulation, around: Floats, turns: in
     return _on_tangent_planes(domain, size * root @ np.moveaxis(_regular(angles[best]), -1, 0))
 
 
-@njit(cache=True)
+@compiled
 def _reach(vertex, points, directions, reach):  # type: ignore[no-untyped-def]
     """How far the points of every vertex reach along directions: reach (V, k), the largest products, at least 0."""
     for n in range(len(vertex)):

@@ -10,11 +10,6 @@ from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.surfaces.triangle_patches import TrianglePatches, triangle_patches
 
 
-def has_exact_patches(basis: object) -> bool:
-    """Whether a component makes functions with exact patches."""
-    return isinstance(basis, type) and issubclass(basis, ElementBasis | TensorBasis)
-
-
 def patches_of(surface: OrbifoldSurface) -> TrianglePatches | PeriodicPatch:
     """The exact patches of a surface of piecewise polynomials: triangles, or one periodic patch of a tensor product.
 

@@ -48,19 +48,20 @@ def alike(twin: Ints, same: Bools) -> Ints:
     return np.where(sheet[:count] == sheet[0], 1, -1)
 
 
-def cell_gluing(domain: GeodesicTriangulation, cells: Floats, sign: Ints) -> Gluing:
+def micro_gluing(domain: GeodesicTriangulation, micro_triangles: Floats, sign: Ints) -> Gluing:
     """How micro triangles are glued: inside of the triangles by their corners, across edges as the triangles are.
 
-    cells: (F, m, 3, 3), counterclockwise in the frame of the triangle where its sign is 1, clockwise where it is -1.
+    micro_triangles: (F, m, 3, 3), counterclockwise in the frame of the triangle where its sign is 1, clockwise where it
+    is -1.
     """
-    count = cells.shape[1]
-    place = cells @ np.linalg.inv(domain.corners)[:, None]
-    place = (place / place.sum(axis=-1, keepdims=True)).reshape(len(cells), 3 * count, 3)
+    count = micro_triangles.shape[1]
+    place = micro_triangles @ np.linalg.inv(domain.corners)[:, None]
+    place = (place / place.sum(axis=-1, keepdims=True)).reshape(len(micro_triangles), 3 * count, 3)
     near = np.abs(place[:, :, None] - place[:, None]).max(axis=-1) < _NEAR
     corner = near.argmax(axis=2)
     following = _following(np.arange(3 * count), 3)
     ends = np.sort(np.stack([corner, corner[:, following]], axis=2), axis=2)
-    key = ((np.arange(len(cells))[:, None] * 3 * count + ends[..., 0]) * 3 * count + ends[..., 1]).ravel()
+    key = ((np.arange(len(micro_triangles))[:, None] * 3 * count + ends[..., 0]) * 3 * count + ends[..., 1]).ravel()
     twin = _paired(key)
     same = np.zeros(len(twin), dtype=np.bool_)
     middle = ((place + place[:, following]) / 2).reshape(-1, 3)

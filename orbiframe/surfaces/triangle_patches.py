@@ -21,7 +21,7 @@ from orbiframe.splines.bernstein import (
     multinomials,
 )
 from orbiframe.splines.element_basis import ElementBasis
-from orbiframe.surfaces.patch_gluing import Gluing, alike, cell_gluing, quartered
+from orbiframe.surfaces.patch_gluing import Gluing, alike, micro_gluing, quartered
 from orbiframe.surfaces.quadrilateral_patches import QuadrilateralPatches
 from orbiframe.surfaces.surface import OrbifoldSurface
 
@@ -77,15 +77,15 @@ def triangle_patches(surface: OrbifoldSurface, basis: ElementBasis) -> TriangleP
 def _turned(basis: ElementBasis, points: Floats, weights: Floats, sign: Ints) -> TrianglePatches:
     """The patches with their corners in the order that the signs of the triangles, (F,), ask for."""
     count = coefficient_count(basis.degree)
-    turned = np.linalg.det(basis.cells) * sign[:, None] < 0
+    turned = np.linalg.det(basis.micro_triangles) * sign[:, None] < 0
     corners = np.where(turned[..., None], [0, 2, 1], [0, 1, 2])
-    cells = np.take_along_axis(basis.cells, corners[..., None], 2)
+    micro_triangles = np.take_along_axis(basis.micro_triangles, corners[..., None], 2)
     order = np.where(turned.reshape(-1, 1), _swapped(basis.degree), np.arange(count))
     return TrianglePatches(
         basis.degree,
         np.take_along_axis(points.reshape(-1, count, 3), order[..., None], 1),
         np.take_along_axis(weights.reshape(-1, count), order, 1),
-        cell_gluing(basis.domain, cells, sign),
+        micro_gluing(basis.domain, micro_triangles, sign),
     )
 
 
@@ -102,7 +102,7 @@ def _weights(basis: ElementBasis) -> Floats:
     """The coefficients of the function of the space that the numerator is divided by, (F, m, n)."""
     if basis.weights is not None:
         return basis.net(basis.weights[:, None])[..., 0]
-    x, k = basis.cells, basis.domain.geometry.curvature
+    x, k = basis.micro_triangles, basis.domain.geometry.curvature
     if k == 0:
         linear = x[..., 0]
         return np.asarray(np.prod(linear[..., None, :] ** exponents(basis.degree), axis=-1))

@@ -1,4 +1,4 @@
-"""The laws of a group whose cell is glued by a word."""
+"""The laws of a group whose polygon is glued by a word."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ def tiles_are_named_by_words(component: Component, _: Lab) -> None:
         tiles = group.tiles(radius)
         centres = group.geometry.distance(group.geometry.origin, tiles[..., 0])
         found = elements_within(group, max(radius, float(centres.max())) + 1e-6)
-        matrices = found.spin().matrix
+        matrices = found.precise().matrix
         apart = np.abs(tiles[:, None] - matrices).max(axis=(2, 3))
         _within(group, apart.min(axis=1))
         _within(group, apart.min(axis=0)[found.distance <= radius - 1e-6])

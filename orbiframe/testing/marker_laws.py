@@ -20,7 +20,7 @@ from orbiframe.groups.marking import Marking
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.surface_type import surface_type
 from orbiframe.planes.geometry import Geometry
-from orbiframe.planes.precise_isometry import Spin
+from orbiframe.planes.precise_isometry import PreciseIsometry
 from orbiframe.testing.lab import Lab
 from orbiframe.words.word import Word
 
@@ -114,14 +114,14 @@ def _markings(component: Component, lab: Lab) -> Iterator[tuple[str, Marking]]:
             yield name, component(mesh)
 
 
-def _elements(marking: Marking) -> Spin:
+def _elements(marking: Marking) -> PreciseIsometry:
     """For every corner of the polygon the element that takes corner 0 to it, in a group that is faithful.
 
     On the projective plane the antipodal map, written as the reflection, which has order 2 as well.
     """
     word = marking.word
     if len(word) == 2:
-        return Spin.rotation(1, np.zeros(2), np.array([False, True]))
+        return PreciseIsometry.rotation(1, np.zeros(2), np.array([False, True]))
     return corner_elements(regular_polygon(_geometry(geometry_name(word.euler_characteristic)), word))
 
 
@@ -131,12 +131,12 @@ def _geometry(name: str) -> Geometry:
     return made
 
 
-def _distance(first: Spin, second: Spin) -> NDArray[np.float64]:
+def _distance(first: PreciseIsometry, second: PreciseIsometry) -> NDArray[np.float64]:
     """How far first^-1 second is from the identity."""
     return np.asarray(np.abs((first.inverse @ second).matrix - np.eye(3)).max(axis=(1, 2)))
 
 
-def _product(step: Spin, start: int, end: int) -> float:
+def _product(step: PreciseIsometry, start: int, end: int) -> float:
     product = step[np.array([start])]
     for halfedge in range(start + 1, end):
         product = product @ step[np.array([halfedge])]

@@ -68,21 +68,21 @@ def _klein_bottle(along: int, across: int) -> Polyhedron:
     def corner(i: int, j: int) -> int:
         return i * across + j % across if i < along else -j % across
 
-    cells = [(i, j) for i in range(along) for j in range(across)]
-    faces = [[corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)] for i, j in cells]
+    squares = [(i, j) for i in range(along) for j in range(across)]
+    faces = [[corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)] for i, j in squares]
     return Polyhedron.from_faces(vertices.reshape(-1, 3), faces)
 
 
 def _double_torus() -> Polyhedron:
     """A plate of unit cubes, five by three, with two of them left out: the sphere with two handles."""
-    cells = {(i, j) for i in range(5) for j in range(3)} - {(1, 1), (3, 1)}
+    squares = {(i, j) for i in range(5) for j in range(3)} - {(1, 1), (3, 1)}
     quads = [
-        [(i, j, z), (i + 1, j, z), (i + 1, j + 1, z), (i, j + 1, z)][:: 2 * z - 1] for i, j in cells for z in (0, 1)
+        [(i, j, z), (i + 1, j, z), (i + 1, j + 1, z), (i, j + 1, z)][:: 2 * z - 1] for i, j in squares for z in (0, 1)
     ]
-    for i, j in sorted(cells):
+    for i, j in sorted(squares):
         ring = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
         for side, step in enumerate([(0, -1), (1, 0), (0, 1), (-1, 0)]):
-            if (i + step[0], j + step[1]) not in cells:
+            if (i + step[0], j + step[1]) not in squares:
                 a, b = ring[side], ring[(side + 1) % 4]
                 quads.append([(*a, 0), (*b, 0), (*b, 1), (*a, 1)])
     corners = sorted({corner for quad in quads for corner in quad})

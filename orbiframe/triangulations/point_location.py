@@ -7,9 +7,10 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from orbiframe.compiled.decorator import compiled
+from orbiframe.compiled.matrices import copy
 from orbiframe.errors import FitError
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
@@ -17,10 +18,10 @@ from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulatio
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-_CELLS_PER_TRIANGLE = 2.0
-_LEAST_CELLS, _MOST_CELLS = 4, 512
+_SQUARES_PER_TRIANGLE = 2.0
+_LEAST_SQUARES_ASIDE, _MOST_SQUARES_ASIDE = 4, 512
 _MOST_STEPS = 1_000_000
-_MANY = 20_000  # from so many points on it pays to sort them by cells
+_MANY = 20_000  # from so many points on it pays to sort them by squares
 # A point this far beyond an edge, in barycentric coordinates, still counts as inside: no point goes back and forth.
 _ON_EDGE = 1e-12
 
@@ -55,7 +56,7 @@ class Locator:
         x = np.asarray(points.x, dtype=np.float64)
         patch, order = np.asarray(points.patch, dtype=np.intp), np.arange(len(x))
         if len(x) >= _MANY:
-            _order_by_cell(patch, x, self.grid.half_width, self.grid.face.shape, order)
+            _order_by_square(patch, x, self.grid.half_width, self.grid.face.shape, order)
             x, patch = x[order], patch[order]
         columns = np.array(self.domain.geometry.carry(x) if frames else x[:, :, None], order="C")
         face = np.empty(len(x), dtype=np.intp)
@@ -74,14 +75,14 @@ class Locator:
         """Where walks start."""
         atlas, geometry = self.domain.orbifold.atlas, self.domain.geometry
         share = self.domain.face_count / atlas.patch_count
-        cells = int(np.clip(np.sqrt(_CELLS_PER_TRIANGLE * share), _LEAST_CELLS, _MOST_CELLS))
+        squares = int(np.clip(np.sqrt(_SQUARES_PER_TRIANGLE * share), _LEAST_SQUARES_ASIDE, _MOST_SQUARES_ASIDE))
         face, isometry = self._seeds()
         far = geometry.from_polar(atlas.radius, 0.0)
         half_width = far[:, 1] / (1 + np.abs(far[:, 0])) if geometry.curvature <= 0 else np.ones(atlas.patch_count)
         sides = 2 if geometry.curvature > 0 else 1
         grid = Grid(
-            np.empty((atlas.patch_count, sides, cells, cells), dtype=np.intp),
-            np.empty((atlas.patch_count, sides, cells, cells, 3, 3)),
+            np.empty((atlas.patch_count, sides, squares, squares), dtype=np.intp),
+            np.empty((atlas.patch_count, sides, squares, squares, 3, 3)),
             half_width,
         )
         _fill_grid(geometry.curvature, face, isometry, self.steps, grid.face, grid.isometry, half_width)
@@ -107,7 +108,8 @@ class Locator:
 class Grid(NamedTuple):
     """Starts of walks: triangles (P, sides, n, n) and isometries (P, sides, n, n, 3, 3) from patch to triangle.
 
-    The cells divide the square of the given half width (P,) in the chart (x1, x2) / (1 + |x0|); sides: x0 > 0 and < 0.
+    The squares divide the square of the given half width (P,) in the chart (x1, x2) / (1 + |x0|); sides: x0 > 0 and <
+    0.
     """
 
     face: Ints
@@ -128,84 +130,88 @@ def require_found(failed: int, points: Points, order: Ints | None = None) -> Non
         )
 
 
-@njit(cache=True)
+@compiled(may_divide_by_zero=True, inline=True)
+def _way_out(inverse, face, x0, x1, x2):  # type: ignore[no-untyped-def]
+    """The barycentric coordinates of a point, and the edge that it is farthest beyond; -1: inside, -2: not finite."""
+    a = inverse[face, 0, 0] * x0 + inverse[face, 0, 1] * x1 + inverse[face, 0, 2] * x2
+    b = inverse[face, 1, 0] * x0 + inverse[face, 1, 1] * x1 + inverse[face, 1, 2] * x2
+    c = inverse[face, 2, 0] * x0 + inverse[face, 2, 1] * x1 + inverse[face, 2, 2] * x2
+    total = abs(a + b + c)
+    least = min(a, min(b, c))
+    # Edge c lies opposite corner c + 2.
+    way = 1 if least == a else 2 if least == b else 0
+    if least >= -_ON_EDGE * total:
+        way = -1
+    elif not total < np.inf:
+        way = -2
+    return a, b, c, way
+
+
+@compiled(may_divide_by_zero=True, inline=True)
+def _carried(g, x0, x1, x2):  # type: ignore[no-untyped-def]
+    """g x, as three numbers."""
+    return (
+        g[0, 0] * x0 + g[0, 1] * x1 + g[0, 2] * x2,
+        g[1, 0] * x0 + g[1, 1] * x1 + g[1, 2] * x2,
+        g[2, 0] * x0 + g[2, 1] * x1 + g[2, 2] * x2,
+    )
+
+
+@compiled
 def _walk_one(face, columns, inverse, twin, across):  # type: ignore[no-untyped-def]
     """Move columns (3, m), the first a point, from triangle to triangle until it is inside; the last one, or -1."""
-    width = columns.shape[1]
     for _ in range(_MOST_STEPS):
-        worst, least, total = 0, np.inf, 0.0
-        for i in range(3):
-            height = (
-                inverse[face, i, 0] * columns[0, 0]
-                + inverse[face, i, 1] * columns[1, 0]
-                + inverse[face, i, 2] * columns[2, 0]
+        _, _, _, way = _way_out(inverse, face, columns[0, 0], columns[1, 0], columns[2, 0])
+        if way < 0:
+            return face if way == -1 else -1
+        edge = 3 * face + way
+        for k in range(columns.shape[1]):
+            columns[0, k], columns[1, k], columns[2, k] = _carried(
+                across[edge], columns[0, k], columns[1, k], columns[2, k]
             )
-            total += height
-            if height < least:
-                worst, least = i, height
-        if not np.isfinite(total):
-            return -1
-        if least >= -_ON_EDGE * abs(total):
-            return face
-        # Halfedge c lies opposite corner c + 2.
-        edge = 3 * face + (worst + 1) % 3
-        for k in range(width):
-            a, b, c = columns[0, k], columns[1, k], columns[2, k]
-            for i in range(3):
-                columns[i, k] = across[edge, i, 0] * a + across[edge, i, 1] * b + across[edge, i, 2] * c
         face = twin[edge] // 3
     return -1
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def cell_of(x0, x1, x2, half_width, cells):  # type: ignore[no-untyped-def]
-    """The cell of the grid, of `cells` times `cells`, in which a point of a patch lies, or the nearest one."""
-    scale = cells / (2 * half_width * (1 + abs(x0)))
-    i = min(max(int(x1 * scale + cells / 2), 0), cells - 1)
-    j = min(max(int(x2 * scale + cells / 2), 0), cells - 1)
+@compiled(may_divide_by_zero=True, inline=True)
+def square_of(x0, x1, x2, half_width, squares):  # type: ignore[no-untyped-def]
+    """The square of the grid, of `squares` times `squares`, in which a point of a patch lies, or the nearest one."""
+    scale = squares / (2 * half_width * (1 + abs(x0)))
+    i = min(max(int(x1 * scale + squares / 2), 0), squares - 1)
+    j = min(max(int(x2 * scale + squares / 2), 0), squares - 1)
     return i, j
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@compiled(may_divide_by_zero=True, inline=True)
 def walk(face, x0, x1, x2, inverse, twin, across):  # type: ignore[no-untyped-def]
     """From triangle to triangle until the point is inside: face, the point in its frame, barycentric coordinates.
 
     The face is -1 where no triangle holds the point.
     """
     for _ in range(_MOST_STEPS):
-        a = inverse[face, 0, 0] * x0 + inverse[face, 0, 1] * x1 + inverse[face, 0, 2] * x2
-        b = inverse[face, 1, 0] * x0 + inverse[face, 1, 1] * x1 + inverse[face, 1, 2] * x2
-        c = inverse[face, 2, 0] * x0 + inverse[face, 2, 1] * x1 + inverse[face, 2, 2] * x2
-        total = abs(a + b + c)
-        least = min(a, min(b, c))
-        if least >= -_ON_EDGE * total:
+        a, b, c, way = _way_out(inverse, face, x0, x1, x2)
+        if way == -1:
             return face, x0, x1, x2, a, b, c
-        if not total < np.inf:
+        if way < 0:
             break
-        # Halfedge c lies opposite corner c + 2.
-        edge = 3 * face + (1 if least == a else 2 if least == b else 0)
-        x0, x1, x2 = (
-            across[edge, 0, 0] * x0 + across[edge, 0, 1] * x1 + across[edge, 0, 2] * x2,
-            across[edge, 1, 0] * x0 + across[edge, 1, 1] * x1 + across[edge, 1, 2] * x2,
-            across[edge, 2, 0] * x0 + across[edge, 2, 1] * x1 + across[edge, 2, 2] * x2,
-        )
-        face = twin[edge] // 3
+        x0, x1, x2 = _carried(across[3 * face + way], x0, x1, x2)
+        face = twin[3 * face + way] // 3
     return -1, x0, x1, x2, 0.0, 0.0, 0.0
 
 
-@njit(cache=True)
-def _order_by_cell(patch, x, half_width, shape, order):  # type: ignore[no-untyped-def]
-    """Sort the numbers of the points by the cells of the grid, counting."""
-    sides, cells = shape[1], shape[2]
+@compiled
+def _order_by_square(patch, x, half_width, shape, order):  # type: ignore[no-untyped-def]
+    """Sort the numbers of the points by the squares of the grid, counting."""
+    sides, squares = shape[1], shape[2]
     key = np.empty(len(patch), dtype=np.int32)
-    start = np.zeros(shape[0] * sides * cells * cells + 1, dtype=np.int64)
+    start = np.zeros(shape[0] * sides * squares * squares + 1, dtype=np.int64)
     for n in range(len(patch)):
         x0, x1, x2 = x[n, 0], x[n, 1], x[n, 2]
         i, j = 0, 0
         if np.isfinite(x0) and np.isfinite(x1) and np.isfinite(x2):
-            i, j = cell_of(x0, x1, x2, half_width[patch[n]], cells)
+            i, j = square_of(x0, x1, x2, half_width[patch[n]], squares)
         side = 1 if sides > 1 and x0 < 0 else 0
-        key[n] = ((patch[n] * sides + side) * cells + i) * cells + j
+        key[n] = ((patch[n] * sides + side) * squares + i) * squares + j
         start[key[n] + 1] += 1
     for k in range(1, len(start)):
         start[k] += start[k - 1]
@@ -214,17 +220,17 @@ def _order_by_cell(patch, x, half_width, shape, order):  # type: ignore[no-untyp
         start[key[n]] += 1
 
 
-@njit(cache=True)
+@compiled
 def _walk_all(patch, face, moved, steps, grid):  # type: ignore[no-untyped-def]
     """Locate every point; returns the first that has no triangle, or -1."""
     grid_face, grid_isometry, half_width = grid
     inverse, twin, across = steps
-    cells, width = grid_face.shape[2], moved.shape[2]
+    squares, width = grid_face.shape[2], moved.shape[2]
     for n in range(len(patch)):
         p, columns = patch[n], moved[n]
         if not (np.isfinite(columns[0, 0]) and np.isfinite(columns[1, 0]) and np.isfinite(columns[2, 0])):
             return n
-        i, j = cell_of(columns[0, 0], columns[1, 0], columns[2, 0], half_width[p], cells)
+        i, j = square_of(columns[0, 0], columns[1, 0], columns[2, 0], half_width[p], squares)
         side = 1 if grid_face.shape[1] > 1 and columns[0, 0] < 0 else 0
         g = grid_isometry[p, side, i, j]
         for k in range(width):
@@ -237,11 +243,11 @@ def _walk_all(patch, face, moved, steps, grid):  # type: ignore[no-untyped-def]
     return -1
 
 
-@njit(cache=True)
-def _centre(curvature, i, j, cells, half_width):  # type: ignore[no-untyped-def]
-    """The middle of a cell as a point of X; in H^2 and E^2 not beyond the patch, in S^2 on the side x0 > 0."""
-    u = ((2 * i + 1) / cells - 1) * half_width
-    v = ((2 * j + 1) / cells - 1) * half_width
+@compiled
+def _centre(curvature, i, j, squares, half_width):  # type: ignore[no-untyped-def]
+    """The middle of a square as a point of X; in H^2 and E^2 not beyond the patch, in S^2 on the side x0 > 0."""
+    u = ((2 * i + 1) / squares - 1) * half_width
+    v = ((2 * j + 1) / squares - 1) * half_width
     radius = np.sqrt(u * u + v * v)
     if radius > half_width:
         u, v, radius = u * half_width / radius, v * half_width / radius, half_width
@@ -251,26 +257,30 @@ def _centre(curvature, i, j, cells, half_width):  # type: ignore[no-untyped-def]
     return (1 - square) / (1 + square), 2 * u / (1 + square), 2 * v / (1 + square)
 
 
-@njit(cache=True)
+@compiled
 def _fill_grid(curvature, seed, isometry, steps, grid_face, grid_isometry, half_width):  # type: ignore[no-untyped-def]
-    """The triangle at the centre of every cell: every row starts from the row before, so that no walk is long."""
+    """The triangle at the centre of every square: every row starts from the row before, so that no walk is long."""
     inverse, twin, across = steps
-    cells = grid_face.shape[2]
-    columns = np.empty((3, 4))
+    squares = grid_face.shape[2]
+    columns, g, row_isometry = np.empty((3, 4)), np.empty((3, 3)), np.empty((3, 3))
     for p in range(len(seed)):
         for side in range(grid_face.shape[1]):
-            row_face, row_isometry = seed[p], isometry[p].copy()
-            for i in range(cells):
-                face, g = row_face, row_isometry.copy()
-                for j in range(cells):
-                    x0, x1, x2 = _centre(curvature, i, j, cells, half_width[p])
+            row_face = seed[p]
+            copy(isometry[p], row_isometry)
+            for i in range(squares):
+                face = row_face
+                copy(row_isometry, g)
+                for j in range(squares):
+                    x0, x1, x2 = _centre(curvature, i, j, squares, half_width[p])
                     x0 = -x0 if side else x0
                     for row in range(3):
                         columns[row, 0] = g[row, 0] * x0 + g[row, 1] * x1 + g[row, 2] * x2
-                        columns[row, 1:] = g[row]
+                        columns[row, 1], columns[row, 2], columns[row, 3] = g[row, 0], g[row, 1], g[row, 2]
                     face = _walk_one(face, columns, inverse, twin, across)
-                    g[:] = columns[:, 1:]
+                    for row in range(3):
+                        g[row, 0], g[row, 1], g[row, 2] = columns[row, 1], columns[row, 2], columns[row, 3]
                     grid_face[p, side, i, j] = face
-                    grid_isometry[p, side, i, j] = g
+                    copy(g, grid_isometry[p, side, i, j])
                     if j == 0:
-                        row_face, row_isometry = face, g.copy()
+                        row_face = face
+                        copy(g, row_isometry)

@@ -1,6 +1,6 @@
 """The public names of orbiframe.words, each with the module it lives in."""
 
-from .conway_symbol import Signature as Signature
+from .conway_symbol import ConwaySymbol as ConwaySymbol
 from .mirror_word import MirrorWord as MirrorWord, Relations as Relations, word_of as word_of
 from .presentation import Presentation as Presentation
 from .word import (

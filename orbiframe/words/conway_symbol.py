@@ -1,4 +1,4 @@
-"""Signature: a closed two-dimensional orbifold in Conway's notation, such as *235, 2222, 4*2, 22x, o or xx."""
+"""ConwaySymbol: a closed two-dimensional orbifold in Conway's notation, such as *235, 2222, 4*2, 22x, o or xx."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ _POINT_GROUPS = {
 
 
 @dataclass(frozen=True)
-class Signature:
+class ConwaySymbol:
     """What makes a closed orbifold: handles, cone points, mirror boundaries with corners, and crosscaps.
 
     handles, crosscaps: how many; cones: the order of each cone point; mirrors: for each boundary the orders m of its
@@ -80,7 +80,7 @@ class Signature:
             )
 
     @classmethod
-    def parse(cls, text: str) -> Signature:
+    def parse(cls, text: str) -> ConwaySymbol:
         """The orbifold of Conway's symbol: o for handles, cone points, * before the corners of a boundary, x at last.
 
         Every digit is an order; one of several digits stands in parentheses, `*23(12)`, or all are set apart by blanks
@@ -126,7 +126,7 @@ class Signature:
         return int(2 / self.euler_characteristic) if self.curvature > 0 else None
 
     @property
-    def canonical(self) -> Signature:
+    def canonical(self) -> ConwaySymbol:
         """The same orbifold in one way: largest orders first, crosscaps in place of handles where there are both.
 
         The corners of a boundary may be read from any of them, and backwards: each boundary by itself if a path on the
@@ -135,9 +135,9 @@ class Signature:
         cones = tuple(sorted(self.cones, reverse=True))
         if self.crosscaps:
             mirrors = sorted((max(_rotated(m), _rotated(m[::-1])) for m in self.mirrors), reverse=True)
-            return Signature(0, cones, tuple(mirrors), self.crosscaps + 2 * self.handles)
+            return ConwaySymbol(0, cones, tuple(mirrors), self.crosscaps + 2 * self.handles)
         ways = [sorted((_rotated(m[::step]) for m in self.mirrors), reverse=True) for step in (1, -1)]
-        return Signature(self.handles, cones, tuple(max(ways)))
+        return ConwaySymbol(self.handles, cones, tuple(max(ways)))
 
     @property
     def name(self) -> str:

@@ -9,7 +9,7 @@ from functools import cached_property
 from itertools import count
 
 from orbiframe.errors import TopologyError
-from orbiframe.words.conway_symbol import Signature
+from orbiframe.words.conway_symbol import ConwaySymbol
 from orbiframe.words.word import Word, inverse_letters, reduced_letters, text_of
 
 Letters = tuple[int, ...]
@@ -89,7 +89,7 @@ class MirrorWord(Word):
         """
         return tuple(tuple(self._crossings(cycle)) for cycle in self.cycles)
 
-    def signature(self, orders: Iterable[int]) -> Signature:
+    def signature(self, orders: Iterable[int]) -> ConwaySymbol:
         """The orbifold, if the vertices, in the order of `cycles`, have these orders, 1 for an ordinary point."""
         order = dict(zip(self.cycles, orders, strict=True))
         cones = tuple(n for cycle, n in order.items() if not cycle.ends and n > 1)
@@ -97,7 +97,7 @@ class MirrorWord(Word):
         reverses = any(self.reverses(side) for side in range(len(self)) if side not in self.mirrors)
         deficit = 2 - self.euler_characteristic - len(boundaries)
         genus = (0, deficit) if reverses else (deficit // 2, 0)
-        return Signature(genus[0], cones, boundaries, genus[1])
+        return ConwaySymbol(genus[0], cones, boundaries, genus[1])
 
     @property
     def euler_characteristic(self) -> int:
@@ -181,7 +181,7 @@ class Relations:
         return f"<{', '.join(map(text_of, self.generators))} | {', '.join(self.texts)}>"
 
 
-def word_of(signature: Signature) -> tuple[MirrorWord, tuple[int, ...]]:
+def word_of(signature: ConwaySymbol) -> tuple[MirrorWord, tuple[int, ...]]:
     """A polygon's word for an orbifold, and the order of each of its vertices in the order of `cycles`.
 
     A handle is abAB, a crosscap aa, a cone point aA, a mirror boundary with k corners a b...c A with k + 1 mirrors; all
@@ -195,7 +195,7 @@ def word_of(signature: Signature) -> tuple[MirrorWord, tuple[int, ...]]:
     for _ in range(signature.handles):
         a, b = next(label), next(label)
         letters += [a, b, -a, -b]
-    for n in signature.cones or ((1,) if signature == Signature() else ()):
+    for n in signature.cones or ((1,) if signature == ConwaySymbol() else ()):
         a = next(label)
         order[len(letters) + 1] = n
         letters += [a, -a]

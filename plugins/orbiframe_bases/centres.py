@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import FitError, Geometry, Triangulation, UsageError
-from orbiframe.meshes import Spacing, dijkstra_forest, edge_graph, farthest_points
+from orbiframe.meshes import Spacing, dijkstra_forest, edge_graph, farthest_points, outermost_vertex
+from orbiframe.triangulations import site_lengths
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -19,11 +20,18 @@ def require_positive(basis: str, **options: float) -> None:
             raise UsageError(f"option {name} of the basis {basis} is {value}; it must be positive")
 
 
-def spread(triangulation: Triangulation, size: int) -> Spacing:
-    """Centres by 3D edge lengths, from the vertex farthest from the centroid on."""
-    vertices = triangulation.polyhedron.vertices
-    first = int(np.argmax(np.linalg.norm(vertices - vertices.mean(axis=0), axis=1)))
-    spacing = farthest_points(edge_graph(triangulation.polyhedron), size, first=first)
+def require_share(basis: str, **options: float) -> None:
+    """Raises UsageError for an option that is no share of a whole."""
+    for name, value in options.items():
+        if not 0 <= value < 1:
+            raise UsageError(f"option {name} of the basis {basis} is {value}; it must be at least 0 and less than 1")
+
+
+def spread(triangulation: Triangulation, size: int, grading: float) -> Spacing:
+    """Centres by 3D edge lengths and the density of `site_density`, from the vertex farthest from the centroid on."""
+    mesh = triangulation.polyhedron
+    graph = edge_graph(mesh, site_lengths(triangulation, grading))
+    spacing = farthest_points(graph, size, first=outermost_vertex(mesh))
     if len(spacing.chosen) < size:
         raise FitError(
             f"{size} functions need as many distinct vertices as centres, and the mesh has {len(spacing.chosen)}; "
@@ -33,12 +41,12 @@ def spread(triangulation: Triangulation, size: int) -> Spacing:
 
 
 def supports(triangulation: Triangulation, spacing: Spacing, per_area: float) -> Floats:
-    """The versine at which each function ends: smoothed cell areas, and never less than what covers the surface."""
+    """The versine at which each function ends: from smoothed areas of regions, at least what covers the surface."""
     mesh = triangulation.polyhedron
     areas = np.bincount(mesh.tail, weights=np.repeat(np.abs(triangulation.areas) / 3, 3), minlength=len(spacing.owner))
-    cells = np.bincount(spacing.owner, weights=areas, minlength=len(spacing.chosen))
+    regions = np.bincount(spacing.owner, weights=areas, minlength=len(spacing.chosen))
     least = _covering(triangulation, spacing)
-    support = np.maximum(per_area * cells, least)
+    support = np.maximum(per_area * regions, least)
     for _ in range(2):
         support = _smoothed(support, spacing.owner[mesh.tail], spacing.owner[mesh.head])
     return np.asarray(np.maximum(support, least))

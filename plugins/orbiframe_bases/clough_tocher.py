@@ -39,12 +39,12 @@ class CloughTocher(ElementBasis):
         for c in range(3):
             corner[c, :, data.unknowns.vertex_slots(c)] = True
         pattern = clough_tocher_nets(corner[None].astype(float), data.pattern[None].astype(float))[0] != 0
-        super().__init__(domain, 3, _cells(domain), data.unknowns.assembled(nets, pattern), 1, rational=False)
+        super().__init__(domain, 3, _micro_triangles(domain), data.unknowns.assembled(nets, pattern), 1, rational=False)
         if domain.geometry.curvature:
             self.weights = data.one
 
 
-def _cells(domain: GeodesicTriangulation) -> Floats:
+def _micro_triangles(domain: GeodesicTriangulation) -> Floats:
     """Micro triangle e is (v_e, v_(e + 1), Z) with Z = (v_1 + v_2 + v_3) / 3, (F, 3, 3, 3)."""
     x = domain.corners
     centre = np.broadcast_to(x.mean(axis=1, keepdims=True), x.shape)

@@ -50,10 +50,6 @@ class Hybrid(DifferentiableBasis):
         mixed = np.tile((exponents(2).max(axis=1) == 1) / 2, domain.face_count)
         self._divisor = ElementBasis(domain, 2, domain.corners[:, None], csr_array(mixed[:, None]), 0)
 
-    def design_matrix(self, points: Points) -> csr_array:
-        """The values of all functions at n points, sparse (n, size)."""
-        return self.jet_matrices(points, 0)[0]
-
     def jet_matrices(self, points: Points, order: int) -> list[csr_array]:
         """See `DifferentiableBasis`."""
         boundary, inside = (part.jet_matrices(points, order) for part in (self._boundary, self._inside))

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from orbiframe.functions import OrbitSumBasis
-from orbiframe.groups import SphericalGroup, SymmetryGroup, orbifold_of, sites_of_cell
+from orbiframe.groups import ConwayGroup, SphericalGroup, orbifold_of, spread_over
 from orbiframe_bases.centres import require_positive
 from orbiframe_bases.gaussian import Gaussian
 
 
 class InvariantGaussian(Gaussian):
-    """Gaussians about `size` points spread evenly over the cell of a group, summed over the group.
+    """Gaussians about `size` points spread evenly over the polygon of a group, summed over the group.
 
     The functions of `Gaussian` for a group with fixed points, where no mesh is at hand: an element that fixes a centre
     gives the same Gaussian once more, which the division by the sum of all makes up for. All are invariant, so their
@@ -24,10 +24,10 @@ class InvariantGaussian(Gaussian):
     """
 
     def __init__(
-        self, group: SymmetryGroup | SphericalGroup, *, size: int = 50, width: float = 1.3, reach: float = 2.6
+        self, group: ConwayGroup | SphericalGroup, *, size: int = 50, width: float = 1.3, reach: float = 2.6
     ) -> None:
         require_positive("invariant-gaussian", size=size, width=width, reach=reach)
-        sites, geometry = sites_of_cell(group, size), group.geometry
+        sites, geometry = spread_over(group, size), group.geometry
         cover = min(1.5 * sites.covering, np.pi) if geometry.curvature > 0 else 1.5 * sites.covering
         least = float(geometry.versine(geometry.origin, geometry.from_polar(cover, 0.0)))
         support = max((reach * width) ** 2 / 2 * group.area / size, least)

@@ -56,7 +56,7 @@ class PowellSabin(ElementBasis):
         jets = VertexJets(domain, self.jet_order, self.vertex_triangles)
         unknowns = Unknowns(domain, at_vertex, self.on_edge, self.in_face)
         matrix = _matrix(self.polynomial_degree, split, jets, unknowns)
-        super().__init__(domain, self.polynomial_degree, split.cells, matrix, self.continuity)
+        super().__init__(domain, self.polynomial_degree, split.micro_triangles, matrix, self.continuity)
 
     def _triangles(self, split: PowellSabinSplit) -> Floats:
         """The triangles about the vertices on which the jets are given."""

@@ -73,10 +73,10 @@ def _spread(jets: Floats, unknowns: int) -> Floats:
 
 def _fill_from_jets(nets: Floats, m: int, fixed: int, jets: Floats, degree: int, share: Floats) -> Floats:
     """The coefficients with m < w arguments Z, from jets with m arguments Z; returns B(R^(w - m), Z^m, u^e)."""
-    start = jets[:, :, [_cell_number(s, 0) for s in range(degree + 1)]]
-    end = jets[:, _NEXT][:, :, [_cell_number(0, s) for s in range(degree, -1, -1)]]
+    start = jets[:, :, [_number_in_micro(s, 0) for s in range(degree + 1)]]
+    end = jets[:, _NEXT][:, :, [_number_in_micro(0, s) for s in range(degree, -1, -1)]]
     for s in range(fixed - m):
-        nets[:, :, 0, _cell_number(s, m)], nets[:, :, 1, _cell_number(s, m)] = start[:, :, 0], end[:, :, -1]
+        nets[:, :, 0, _number_in_micro(s, m)], nets[:, :, 1, _number_in_micro(s, m)] = start[:, :, 0], end[:, :, -1]
         start, end = _edge_polar(start, share), _edge_polar(end, share)
     line = np.concatenate([start, end], axis=2)
     _fill_row(nets, m, fixed - m, line, share)
@@ -89,7 +89,7 @@ def _fill_row(nets: Floats, m: int, first: int, line: Floats, share: Floats) -> 
     line: (N, 3, t + 1, unknowns), coefficient s on edge c with t - s arguments v_c and s arguments v_(c + 1).
     """
     for s in range(first, first + line.shape[2]):
-        number = _cell_number(s, m)
+        number = _number_in_micro(s, m)
         nets[:, :, 0, number], nets[:, :, 1, number] = line[:, :, 0], line[:, :, -1]
         line = _edge_polar(line, share)
 
@@ -138,7 +138,7 @@ def _add_edge_unknowns(central: Floats, line: Floats, pieces: Pieces) -> None:
         central[:, _number((2, 2, 1), e)] = -known[:, e] / factor[:, e]
 
 
-def _cell_number(s: int, m: int) -> int:
+def _number_in_micro(s: int, m: int) -> int:
     """The number of the exponent with s arguments R and m arguments Z."""
     return (s + m) * (s + m + 1) // 2 + m
 
@@ -146,7 +146,7 @@ def _cell_number(s: int, m: int) -> int:
 def _number(exponent: tuple[int, int, int], corner: int = 0) -> int:
     """The number of an exponent that is given in the order corner, corner + 1, corner + 2."""
     _, second, third = (exponent[(i - corner) % 3] for i in range(3))
-    return _cell_number(second, third)
+    return _number_in_micro(second, third)
 
 
 @lru_cache(maxsize=16)

@@ -18,7 +18,7 @@ from orbiframe_bases.ear_clipping import clip_ears
 from orbiframe_bases.knot_clouds import flatness, knot_clouds
 from orbiframe_bases.simplex_program import subset_program
 from orbiframe_bases.simplex_reach import same_rows
-from orbiframe_bases.simplex_splines import Elements, SimplexSplines
+from orbiframe_bases.simplex_splines import KnotSets, SimplexSplines
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -62,10 +62,10 @@ class Simplex(SimplexSplines):
                 "from 0 to 0.3"
             )
         domain = domain_for(orbifold, triangulation, size, _UNKNOWNS[degree])
-        super().__init__(domain, degree, _best_elements(domain, degree, radius))
+        super().__init__(domain, degree, _best_knot_sets(domain, degree, radius))
 
 
-def _best_elements(domain: GeodesicTriangulation, degree: int, radius: float) -> Elements:
+def _best_knot_sets(domain: GeodesicTriangulation, degree: int, radius: float) -> KnotSets:
     """The functions for the turn of all displacements that keeps three knots farthest from a line.
 
     Splines with knots almost in line have creases. On large triangulations no turn avoids them all: there are fewer
@@ -76,7 +76,7 @@ def _best_elements(domain: GeodesicTriangulation, degree: int, radius: float) ->
     turns = np.arange(tries) * (2 * np.pi / tries)
     found = [made(Stars(domain, knot_clouds(domain, 1, radius, turn)[:, 1])) for turn in turns]
     triples = np.array(list(combinations(range(degree + 2), 3)))
-    return found[int(np.argmax([flatness(elements.knots, triples) for elements in found]))]
+    return found[int(np.argmax([flatness(knot_sets.knots, triples) for knot_sets in found]))]
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +164,7 @@ class Stars:
         return np.concatenate(found)
 
 
-def _elements(home: Ints, knots: Floats, column: Ints, size: int) -> Elements:
+def _knot_sets(home: Ints, knots: Floats, column: Ints, size: int) -> KnotSets:
     """Functions sum over (t', I') of det(t' with x in place of b) M(t' + I'), b in t', for I = I' + b.
 
     That is B_I: the inner sides of the triangles that fill the link of I cancel (one step of the recursion). Knots 0,
@@ -174,22 +174,22 @@ def _elements(home: Ints, knots: Floats, column: Ints, size: int) -> Elements:
     lead = np.stack([np.cross(q, r - q), np.cross(r, p - r), np.cross(p, q - p)], axis=1)
     base = subset_program(knots.shape[1])
     program = type(base)(base.states, base.start, base.child, base.knot, np.repeat(base.outputs, 3))
-    return Elements(program, home, knots, np.ones(column.shape), lead, column, size)
+    return KnotSets(program, home, knots, np.ones(column.shape), lead, column, size)
 
 
-def _hats(stars: Stars) -> Elements:
+def _hats(stars: Stars) -> KnotSets:
     """I' empty, t' the triangles, I a vertex."""
     d = stars.domain
     knots = np.einsum("fcij,fcj->fci", d.corner_frame, stars.knots[d.vertex])
-    return _elements(np.arange(d.face_count), knots, d.vertex, d.vertex_count)
+    return _knot_sets(np.arange(d.face_count), knots, d.vertex, d.vertex_count)
 
 
-def _edge_functions(stars: Stars) -> Elements:
+def _edge_functions(stars: Stars) -> KnotSets:
     """I' = {v}, t' the triangles that fill the polygon around v, I an edge."""
     t = stars.triangles
     v = stars.vertex[t[:, 0]]
     knots = np.concatenate([stars.place[t], stars.knots[v][:, None]], axis=1)
-    return _elements(stars.home[v], knots, stars.edge[t], stars.domain.edge_count)
+    return _knot_sets(stars.home[v], knots, stars.edge[t], stars.domain.edge_count)
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,7 +201,7 @@ class _Lifts:
     place: Floats
 
 
-def _triple_functions(stars: Stars) -> Elements:
+def _triple_functions(stars: Stars) -> KnotSets:
     """I' = {v, w} an edge, t' the triangles that fill its link, I a triple."""
     polygon, spoke, triangle = _edge_links(stars)
     v = stars.vertex[spoke]
@@ -209,7 +209,7 @@ def _triple_functions(stars: Stars) -> Elements:
     ends = np.stack([stars.knots[v], stars.place[spoke]], axis=1)
     knots = np.concatenate([b.place, ends], axis=1)
     column = _triple_numbers(stars, spoke, b)
-    return _elements(stars.home[v], knots, column, int(column.max()) + 1)
+    return _knot_sets(stars.home[v], knots, column, int(column.max()) + 1)
 
 
 def _edge_links(stars: Stars) -> tuple[_Lifts, Ints, Ints]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from orbiframe.compiled import compiled
 
 # Three knots count as spanning a point if they span the point a little beside it, at x + _BESIDE (e1 + 0.6 e2): one
 # place for all cones, so that points on knots and on planes through knots lie in exactly one cone of each subdivision.
@@ -17,12 +18,12 @@ _ALONG = np.array([0, 0, 1, 0, 0, 1, 0, 0, 0, 1])
 _ENTRIES = np.array([1, 3, 6, 10])
 
 
-@njit(cache=True, inline="always")
+@compiled(inline=True)
 def _dot(row, columns, k):  # type: ignore[no-untyped-def]
     return row[0] * columns[0, k] + row[1] * columns[1, k] + row[2] * columns[2, k]
 
 
-@njit(cache=True)
+@compiled
 def _reaches(bounds, columns):  # type: ignore[no-untyped-def]
     for b in range(len(bounds)):  # noqa: SIM110
         if _dot(bounds[b], columns, 0) < -1e-9:
@@ -30,7 +31,7 @@ def _reaches(bounds, columns):  # type: ignore[no-untyped-def]
     return True
 
 
-@njit(cache=True)
+@compiled
 def _spanned(rows, first, columns):  # type: ignore[no-untyped-def]
     """Whether three knots span the place beside the point; column 3 holds it."""
     for t in range(first, first + 3):  # noqa: SIM110
@@ -39,7 +40,7 @@ def _spanned(rows, first, columns):  # type: ignore[no-untyped-def]
     return True
 
 
-@njit(cache=True)
+@compiled
 def _run(program, rows, height, columns, entries, jets, live):  # type: ignore[no-untyped-def]
     """The jets (states, entries) of all states at one point: M_B = sum lambda_b M_(B - b) and its derivatives
     D_u M_B = (m - 3) sum mu_b M_(B - b), u = sum mu_b b."""
@@ -67,7 +68,7 @@ def _run(program, rows, height, columns, entries, jets, live):  # type: ignore[n
                     jets[s, e] += (mu1 if _ALONG[e] == 0 else mu2) * jets[below, _LOWER[e]]
 
 
-@njit(cache=True)
+@compiled
 def _times_linear(row, columns, jet, entries, out):  # type: ignore[no-untyped-def]
     """The jet of a linear function times F from the jet of F (rule of Leibniz)."""
     at = _dot(row, columns, 0)
@@ -89,7 +90,7 @@ def _times_linear(row, columns, jet, entries, out):  # type: ignore[no-untyped-d
         out[9] += 3 * b * jet[5]
 
 
-@njit(cache=True)
+@compiled
 def _covariant(curvature, degree, jet, out):  # type: ignore[no-untyped-def]
     """Covariant derivatives on X, in the order of `DifferentiableBasis`, from those in R^3 along the frame.
 
@@ -113,13 +114,13 @@ def _covariant(curvature, degree, jet, out):  # type: ignore[no-untyped-def]
         out[11] = jet[9] - (2 * low + k) * jet[2]
 
 
-@njit(cache=True)
+@compiled
 def _beside(here):  # type: ignore[no-untyped-def]
     for i in range(3):
         here[i, 3] = here[i, 0] + _BESIDE * (here[i, 1] + _TURN * here[i, 2])
 
 
-@njit(cache=True)
+@compiled
 def _moved(g, columns, here):  # type: ignore[no-untyped-def]
     for k in range(3):
         a, b, c = columns[0, k], columns[1, k], columns[2, k]
@@ -128,30 +129,31 @@ def _moved(g, columns, here):  # type: ignore[no-untyped-def]
     _beside(here)
 
 
-@njit(cache=True)
-def _emit(element, family, s, output, here, jets, entries, shape, product, out):  # type: ignore[no-untyped-def]
-    """The covariant jet of one output of an element at a point."""
+@compiled
+def _emit(knot_set, family, s, output, here, jets, entries, shape, product, out):  # type: ignore[no-untyped-def]
+    """The covariant jet of one output of a set of knots at a point."""
     factor, lead = family
     jet = jets[s]
     if len(lead):
-        _times_linear(lead[element, output], here, jet, entries, product)
+        _times_linear(lead[knot_set, output], here, jet, entries, product)
         jet = product
     _covariant(shape[0], shape[1], jet, out)
-    out *= factor[element, output]
+    for kind in range(len(out)):
+        out[kind] *= factor[knot_set, output]
 
 
-@njit(cache=True)
-def fill_columns(place, reach, elements, program, family, row_start, slots, values):  # type: ignore[no-untyped-def]
+@compiled
+def fill_columns(place, reach, knot_sets, program, family, row_start, slots, values):  # type: ignore[no-untyped-def]
     """The rows of design matrices: all functions that may be nonzero on the triangle of each point.
 
     place: number, triangle (n,), columns (n, 3, 3) (point and frame) of each point and (curvature, degree); reach:
-    `Reach` as arrays; elements: bounds, rows and heights; program: start, child, orders, outputs; family: factor (E,
+    `Reach` as arrays; knot_sets: bounds, rows and heights; program: start, child, orders, outputs; family: factor (E,
     outputs), and rows of linear functions (E, outputs, 3) or (0, 0, 3); slots: where the outputs of a candidate stand
     in its row; values: (kinds, nonzeros), zero before.
     """
     order, face, columns, shape = place
-    first, element, isometry = reach
-    bounds, rows, height = elements
+    first, knot_set, isometry = reach
+    bounds, rows, height = knot_sets
     start, child, orders, outputs = program
     kinds = len(values)
     entries = kinds if kinds < 12 else 10
@@ -159,7 +161,7 @@ def fill_columns(place, reach, elements, program, family, row_start, slots, valu
     here, product, out = np.empty((3, 4)), np.empty(entries), np.empty(kinds)
     for n in range(len(face)):
         for c in range(first[face[n]], first[face[n] + 1]):
-            e = element[c]
+            e = knot_set[c]
             _moved(isometry[c], columns[n], here)
             if not _reaches(bounds[e], here):
                 continue
@@ -172,12 +174,12 @@ def fill_columns(place, reach, elements, program, family, row_start, slots, valu
                         values[kind, where] += out[kind]
 
 
-@njit(cache=True)
-def evaluate(place, reach, elements, program, family, column, coefficients, values):  # type: ignore[no-untyped-def]
+@compiled
+def evaluate(place, reach, knot_sets, program, family, column, coefficients, values):  # type: ignore[no-untyped-def]
     """Jets of functions with given coefficients (size, q): values (kinds, points, q), zero before."""
     order, face, columns, shape = place
-    first, element, isometry = reach
-    bounds, rows, height = elements
+    first, knot_set, isometry = reach
+    bounds, rows, height = knot_sets
     start, child, orders, outputs = program
     kinds, width = len(values), coefficients.shape[1]
     entries = kinds if kinds < 12 else 10
@@ -185,7 +187,7 @@ def evaluate(place, reach, elements, program, family, column, coefficients, valu
     here, product, out = np.empty((3, 4)), np.empty(entries), np.empty(kinds)
     for n in range(len(face)):
         for c in range(first[face[n]], first[face[n] + 1]):
-            e = element[c]
+            e = knot_set[c]
             _moved(isometry[c], columns[n], here)
             if not _reaches(bounds[e], here):
                 continue
@@ -196,22 +198,3 @@ def evaluate(place, reach, elements, program, family, column, coefficients, valu
                     for kind in range(kinds):
                         for q in range(width):
                             values[kind, order[n], q] += out[kind] * coefficients[column[e, o], q]
-
-
-@njit(cache=True)
-def simplex_splines(program, rows, height, columns, values):  # type: ignore[no-untyped-def]
-    """The jets in R^3 of the outputs of a program for one set of knots: values (n, outputs, 1, 3, 6 or 10).
-
-    columns: (n, 3, 3), points and two directions; rows and heights of the one set.
-    """
-    start, child, orders, outputs = program
-    entries = values.shape[2]
-    jets, live = np.empty((len(orders), entries)), np.empty(len(orders), dtype=np.bool_)
-    here = np.empty((3, 4))
-    for n in range(len(columns)):
-        here[:, :3] = columns[n]
-        _beside(here)
-        _run((start, child, orders), rows, height, here, entries, jets, live)
-        for o in range(len(outputs)):
-            for e in range(entries):
-                values[n, o, e] = jets[outputs[o], e] if live[outputs[o]] else 0.0

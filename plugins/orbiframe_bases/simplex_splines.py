@@ -29,7 +29,7 @@ _ZERO = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
-class Elements:
+class KnotSets:
     """Sets of knots, and the functions that are made of their simplex splines.
 
     Output o of set e is factor[e, o] M_o, times the linear function lead[e, o] where there is one, and belongs to
@@ -66,19 +66,15 @@ class SimplexSplines(DifferentiableBasis):
     Raises FitError where W is not positive, and for knots on more than a half-sphere: triangles that are too large.
     """
 
-    def __init__(self, domain: GeodesicTriangulation, degree: int, elements: Elements) -> None:
+    def __init__(self, domain: GeodesicTriangulation, degree: int, knot_sets: KnotSets) -> None:
         self.orbifold, self.domain, self.degree = domain.orbifold, domain, degree
         self.weights: Floats | None = None
-        self.elements, self.size = elements, elements.size
-        self.elements = self._without_zeros()
-        self.size = self.elements.size
-        self.smoothness = degree + 1 - most_coplanar(elements)
+        self.knot_sets, self.size = knot_sets, knot_sets.size
+        self.knot_sets = self._without_zeros()
+        self.size = self.knot_sets.size
+        self.smoothness = degree + 1 - most_coplanar(knot_sets)
         if degree % 2 == 1 and domain.geometry.curvature != 0:
             self.weights = self._nearest_to_one()
-
-    def design_matrix(self, points: Points) -> csr_array:
-        """The values of all functions at n points, sparse (n, size)."""
-        return self.jet_matrices(points, 0)[0]
 
     def jet_matrices(self, points: Points, order: int) -> list[csr_array]:
         """See `DifferentiableBasis`."""
@@ -116,7 +112,7 @@ class SimplexSplines(DifferentiableBasis):
             self._steps,
             self._program,
             self._family,
-            self.elements.column,
+            self.knot_sets.column,
             np.ascontiguousarray(coefficients, dtype=np.float64),
             values,
         )
@@ -125,17 +121,17 @@ class SimplexSplines(DifferentiableBasis):
     def _place(self, points: Points) -> _Place:
         return _Place(*self.locator.locate(points, frames=True), (self.domain.geometry.curvature, self.degree))
 
-    def _without_zeros(self) -> Elements:
+    def _without_zeros(self) -> KnotSets:
         """The same without functions that are zero everywhere: sums whose parts cancel, told by quadrature points."""
         matrix = self.design_matrix(quadrature(self.domain, self.degree + 2)[0])
         height = abs(matrix).max(axis=0).toarray().ravel()
         kept = height > _ZERO * height.max()
         if kept.all():
-            return self.elements
+            return self.knot_sets
         del self._pattern
-        column = (np.cumsum(kept) - 1)[self.elements.column]
-        factor = self.elements.factor * kept[self.elements.column]
-        return replace(self.elements, column=np.maximum(column, 0), factor=factor, size=int(kept.sum()))
+        column = (np.cumsum(kept) - 1)[self.knot_sets.column]
+        factor = self.knot_sets.factor * kept[self.knot_sets.column]
+        return replace(self.knot_sets, column=np.maximum(column, 0), factor=factor, size=int(kept.sum()))
 
     def _nearest_to_one(self) -> Floats:
         """The coefficients of the function that is nearest to 1 in the mean square, by quadrature on the triangles."""
@@ -159,33 +155,33 @@ class SimplexSplines(DifferentiableBasis):
 
     @cached_property
     def _bounds(self) -> Floats:
-        return np.ascontiguousarray(hull_bounds(self.domain, self.elements.knots))
+        return np.ascontiguousarray(hull_bounds(self.domain, self.knot_sets.knots))
 
     @cached_property
     def _reach(self) -> Reach:
-        return reach(self.locator, self.elements.face, self.elements.knots, self._bounds)
+        return reach(self.locator, self.knot_sets.face, self.knot_sets.knots, self._bounds)
 
     @cached_property
     def _steps(self) -> tuple[Floats, Floats, Floats]:
         """What the recursion needs for every set: bounds, rows and heights."""
-        rows, height = self.elements.program.rows(self.elements.knots)
+        rows, height = self.knot_sets.program.rows(self.knot_sets.knots)
         return self._bounds, np.ascontiguousarray(rows), height
 
     @property
     def _program(self) -> tuple[Ints, Ints, Ints, Ints]:
-        program = self.elements.program
+        program = self.knot_sets.program
         return program.start, program.child, program.orders, program.outputs
 
     @property
     def _family(self) -> tuple[Floats, Floats]:
-        return self.elements.factor, self.elements.lead
+        return self.knot_sets.factor, self.knot_sets.lead
 
     @cached_property
     def _pattern(self) -> tuple[Ints, Ints, Ints]:
         """The functions that matter on each triangle: start (F + 1,), columns, and places of outputs, (c, o)."""
         first, element, _ = self._reach
         triangle = np.repeat(np.arange(self.domain.face_count), np.diff(first))
-        key = triangle[:, None] * np.int64(self.size) + self.elements.column[element]
+        key = triangle[:, None] * np.int64(self.size) + self.knot_sets.column[element]
         found, place = np.unique(key, return_inverse=True)
         face, column = np.divmod(found, self.size)
         start = np.searchsorted(face, np.arange(self.domain.face_count + 1))
@@ -201,14 +197,14 @@ def quadrature(domain: GeodesicTriangulation, points: int) -> tuple[Points, Floa
     return Points(np.repeat(domain.patch, len(weights)), places), (domain.areas[:, None] * weights).ravel()
 
 
-def most_coplanar(elements: Elements) -> int:
+def most_coplanar(knot_sets: KnotSets) -> int:
     """The largest number of knots of one simplex spline in a plane through the origin: 2 in general position.
 
     A simplex spline of m knots is C^(m - q - 2) across a plane that holds q of them.
     """
     return max(
-        _most_in_a_plane(elements.knots[:, list(elements.program.states[o])])
-        for o in set(elements.program.outputs.tolist())
+        _most_in_a_plane(knot_sets.knots[:, list(knot_sets.program.states[o])])
+        for o in set(knot_sets.program.outputs.tolist())
     )
 
 

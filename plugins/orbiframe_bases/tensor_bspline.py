@@ -13,6 +13,7 @@ from orbiframe import GeometryError, Orbifold, Points, Triangulation, UsageError
 from orbiframe.orbifolds import FlatLattice
 from orbiframe.splines import TensorBasis
 from orbiframe.triangulations import GeodesicTriangulation
+from orbiframe_bases.degrees import require_degree
 from orbiframe_bases.periodic_bsplines import PeriodicBSplines
 
 Floats = NDArray[np.float64]
@@ -53,8 +54,9 @@ class TensorBSpline(TensorBasis):
         knots_u: Sequence[float] | None = None,
         knots_v: Sequence[float] | None = None,
     ) -> None:
-        if degree < 1 or size < 1:
-            raise UsageError(f"tensor-bspline has degree {degree} and size {size}; both must be at least 1")
+        require_degree("tensor-bspline", degree, 1)
+        if size < 1:
+            raise UsageError(f"tensor-bspline has the size {size}; it must be at least 1")
         _require_flat(orbifold)
         self.orbifold, self.degree = orbifold, degree
         self.lattice = FlatLattice.of(orbifold)
@@ -87,10 +89,6 @@ class TensorBSpline(TensorBasis):
     def net(self, coefficients: Floats) -> Floats:
         """See `TensorBasis`."""
         return np.asarray(coefficients[self.number])
-
-    def design_matrix(self, points: Points) -> csr_array:
-        """The values of all functions at n points, sparse (n, size)."""
-        return self.jet_matrices(points, 0)[0]
 
     def jet_matrices(self, points: Points, order: int) -> list[csr_array]:
         """See `DifferentiableBasis`; the frames are flat, so covariant derivatives are plain ones."""

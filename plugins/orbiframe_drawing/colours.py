@@ -11,7 +11,6 @@ Floats = NDArray[np.float64]
 
 INK = "#1a1a1a"
 GREY = "#8a8f94"
-PALE = "#c4c9ce"
 PAPER = "#fbf6e9"
 # After Okabe and Ito, in an order in which neighbours differ in lightness; without their yellow, too pale for lines.
 _LINES = ("#0072b2", "#d98200", "#6a1b5e", "#2a9d78", "#d1440c", "#58aee0", "#96763f", "#c9699f", "#3d4a52", "#8c9a2b")

@@ -18,7 +18,7 @@ from orbiframe_drawing.function_image import Function, function_image
 from orbiframe_drawing.models import Chart, Model, Solid, model_of
 from orbiframe_drawing.page import WIDTH, Page
 from orbiframe_drawing.picture import Curve, Item, Label, Picture, Shape, arrowhead, chained, circle
-from orbiframe_drawing.polygon import Cell, cell_of
+from orbiframe_drawing.polygon import DrawnPolygon, polygon_of
 from orbiframe_drawing.tiles import Tiles, nearest_tiles, tiles_within
 
 Floats = NDArray[np.float64]
@@ -85,39 +85,39 @@ def group_picture(
     """
     if radius is not None and tiles is not None:
         raise UsageError("a radius and a number of tiles are given; give one of them")
-    cell, chosen = cell_of(group), model_of(group.geometry, model)
+    polygon, chosen = polygon_of(group), model_of(group.geometry, model)
     # Where all tiles beside one another are mirror images, the two tints show it.
-    reverses = not group.word.orientable and not any(cell.mirrors)
+    reverses = not group.word.orientable and not any(polygon.mirrors)
     with_motif = (reverses and function is None) if motif is None else motif
     if isinstance(chosen, Solid):
-        chosen = replace(chosen, height=_RIM * float(np.cosh(cell.circumradius)))
+        chosen = replace(chosen, height=_RIM * float(np.cosh(polygon.circumradius)))
     if radius is not None:
-        shown = tiles_within(group, cell, radius)
+        shown = tiles_within(group, polygon, radius)
     elif tiles is None and isinstance(chosen, Solid) and group.geometry.curvature < 0:
-        shown = tiles_within(group, cell, float(np.arccosh(chosen.height)))
+        shown = tiles_within(group, polygon, float(np.arccosh(chosen.height)))
     else:
-        shown = _default_tiles(group, cell) if tiles is None else nearest_tiles(group, cell, tiles)
-    return GroupPicture(cell, shown, chosen, with_motif, function, points).picture()
+        shown = _default_tiles(group, polygon) if tiles is None else nearest_tiles(group, polygon, tiles)
+    return GroupPicture(polygon, shown, chosen, with_motif, function, points).picture()
 
 
-def _default_tiles(group: Group, cell: Cell) -> Tiles:
+def _default_tiles(group: Group, polygon: DrawnPolygon) -> Tiles:
     """As many as fill the window, or in H^2 as far as tiles can be told apart."""
-    curvature, radius = group.geometry.curvature, cell.circumradius
+    curvature, radius = group.geometry.curvature, polygon.circumradius
     if curvature == 0:
-        return tiles_within(group, cell, np.sqrt(2) * _WINDOW * radius)
+        return tiles_within(group, polygon, np.sqrt(2) * _WINDOW * radius)
     if curvature > 0:
-        return tiles_within(group, cell, np.pi)
+        return tiles_within(group, polygon, np.pi)
     # A tile at the distance d has about WIDTH / 2 / cosh(d / 2)^2 times its circumradius on the page.
     far = 2 * np.arccosh(np.sqrt(max(WIDTH / 2 * radius / _SMALLEST, 1.0)))
     count = 2 * np.pi * (np.cosh(far) - 1) / group.area
-    return nearest_tiles(group, cell, int(np.clip(count, *_COUNTS)))
+    return nearest_tiles(group, polygon, int(np.clip(count, *_COUNTS)))
 
 
 @dataclass(frozen=True, eq=False)
 class GroupPicture:
     """What the picture of a group is made of."""
 
-    cell: Cell
+    polygon: DrawnPolygon
     tiles: Tiles
     model: Model
     motif: bool = False
@@ -133,7 +133,7 @@ class GroupPicture:
     @cached_property
     def page(self) -> Page:
         """The model on the page."""
-        return Page(self.model, _WINDOW * float(np.linalg.norm(self.model.place(self.cell.corners), axis=1).max()))
+        return Page(self.model, _WINDOW * float(np.linalg.norm(self.model.place(self.polygon.corners), axis=1).max()))
 
     def _background(self) -> Iterator[Item]:
         if self.function is not None:
@@ -142,7 +142,7 @@ class GroupPicture:
     @cached_property
     def _corners(self) -> Floats:
         """The corners of all tiles, (n, m, 3)."""
-        return np.asarray(np.einsum("kij,mj->kmi", self.tiles.elements, self.cell.corners))
+        return np.asarray(np.einsum("kij,mj->kmi", self.tiles.elements, self.polygon.corners))
 
     @cached_property
     def _sizes(self) -> Floats:
@@ -167,7 +167,7 @@ class GroupPicture:
             yield Shape(paths, True, shade, INK, width, clip=self.page.window)
         if self.motif:
             elements = self.tiles.elements[self._sizes > _MOTIF_LEAST]
-            motifs = np.einsum("kij,mj->kmi", elements, self.cell.motif)
+            motifs = np.einsum("kij,mj->kmi", elements, self.polygon.motif)
             whole = [np.array_equal(self.model.front(motif, True), motif) for motif in motifs]
             yield Shape(self.page.paths(motifs[whole]), True, fill=INK, opacity=0.55, clip=self.page.window)
 
@@ -176,19 +176,21 @@ class GroupPicture:
         length, first = int(self.tiles.length[tile]), np.flatnonzero(self.tiles.first[tile])
         if length == 0:
             return PAPER
-        colour = mixed([line_colour(abs(self.cell.letters[side])) for side in first])
+        colour = mixed([line_colour(abs(self.polygon.letters[side])) for side in first])
         return tint(colour, _TINTS[length % 2] * _FADE**length)
 
     def _sides(self) -> Iterator[Item]:
         """The sides of F, thick and in the colours of their letters, with arrows but on mirrors."""
-        for letter, pieces, mirror in zip(self.cell.letters, self.cell.sides, self.cell.mirrors, strict=True):
+        for letter, pieces, mirror in zip(self.polygon.letters, self.polygon.sides, self.polygon.mirrors, strict=True):
             curves = chained(curve for path in self.page.paths(pieces, closed=False) for curve in path)
             yield Shape(curves, stroke="#ffffff", width=4.2)
             yield Shape(curves, stroke=self._colour(letter), width=2.4)
-            if curves and self.cell.named and not mirror:
+            if curves and self.polygon.named and not mirror:
                 yield self._arrow(curves[0], letter)
         # A whole great circle has no corner: its pieces only make it up.
-        ends = self.cell.corners[:: self.cell.pieces] if len(self.cell.letters) > 1 else self.cell.corners[:0]
+        ends = (
+            self.polygon.corners[:: self.polygon.pieces] if len(self.polygon.letters) > 1 else self.polygon.corners[:0]
+        )
         corners = [x for x in ends if len(self.model.front(x[None], False))]
         dots = [circle(self.page.place(corner), 2.2) for corner in corners]
         yield Shape(dots, True, fill=INK)
@@ -201,7 +203,7 @@ class GroupPicture:
         """The arrow of a side; on the hyperboloid away from the middle, where a side turns sharply."""
         way = side[len(side) // 2]
         at = 0.0 if len(side) % 2 == 0 else 0.5
-        if isinstance(self.model, Solid) and self.cell.geometry.curvature < 0:
+        if isinstance(self.model, Solid) and self.polygon.geometry.curvature < 0:
             at = 0.34 if letter > 0 else 0.66
         before, after = way.at([max(at - 1e-3, 0.0), at + 1e-3])
         tip = way.at([at])[0]
@@ -210,14 +212,14 @@ class GroupPicture:
     @cached_property
     def _letter_size(self) -> float:
         """The size of letters, smaller where a polygon has many sides."""
-        corners = self.page.place(self.cell.corners)
+        corners = self.page.place(self.polygon.corners)
         side = float(np.linalg.norm(corners - np.roll(corners, -1, axis=0), axis=1).min())
         return float(np.clip(side / 4, 7.0, 14.0))
 
     def _rim(self) -> Iterator[Item]:
         if self.model.boundary():
             yield Shape([self.page.window], True, stroke=INK, width=1.0)
-            if isinstance(self.model, Solid) and self.cell.geometry.curvature < 0:
+            if isinstance(self.model, Solid) and self.polygon.geometry.curvature < 0:
                 heights = np.cosh(np.arange(1.0, np.arccosh(self.model.height)))
                 levels = [[self.page.on_page(self.model.level(float(height)))] for height in heights]
                 yield Shape(levels, stroke=GREY, width=0.4, dash=(2.0, 2.5))
@@ -235,9 +237,9 @@ class GroupPicture:
 
     def _labels(self) -> Iterator[Item]:
         """Letters inside F, beside the middles of their sides."""
-        centre = self.page.place(self.cell.geometry.origin)
-        for letter, middle in zip(self.cell.letters, self.cell.middles, strict=True):
-            if not self.cell.named or not len(self.model.front(middle[None], False)):
+        centre = self.page.place(self.polygon.geometry.origin)
+        for letter, middle in zip(self.polygon.letters, self.polygon.middles, strict=True):
+            if not self.polygon.named or not len(self.model.front(middle[None], False)):
                 continue
             at = self.page.place(middle)
             inward = (centre - at) / np.linalg.norm(centre - at)

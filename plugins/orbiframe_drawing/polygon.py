@@ -1,4 +1,4 @@
-"""The cell of a group as a polygon to draw: corners, and the letters of its sides with their arrows."""
+"""The polygon of a group as a polygon to draw: corners, and the letters of its sides with their arrows."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _ON_SIDE = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class Cell:
+class DrawnPolygon:
     """A polygon with geodesic sides: the fundamental polygon F of a group.
 
     corners: (n, 3), counterclockwise; letters: the letter of every side from corner k to corner k + 1, negative where
@@ -63,32 +63,32 @@ class Cell:
 
     @cached_property
     def motif(self) -> Floats:
-        """The corners (10, 3) of a letter F in the middle of the cell."""
+        """The corners (10, 3) of a letter F in the middle of the polygon."""
         near = self.geometry.distance(self.geometry.origin, np.concatenate([self.corners, self.middles]))
         size = _MOTIF_SIZE * min(float(near.min()), _LARGEST_MOTIF)
         return self.geometry.from_polar(size * np.hypot(*_MOTIF.T), np.arctan2(_MOTIF[:, 1], _MOTIF[:, 0]))
 
 
-def cell_of(group: Group) -> Cell:
+def polygon_of(group: Group) -> DrawnPolygon:
     """The fundamental polygon of a group; on the sphere also a lune, or half of it with a great circle for its side.
 
-    Raises GeometryError for the trivial group, whose cell is the whole sphere, and for groups without a polygon.
+    Raises GeometryError for the trivial group, whose polygon is the whole sphere, and for groups without a polygon.
     """
     if isinstance(group, PolygonGroup):
-        return Cell(group.geometry, group.polygon.vertices, group.word.letters, group.polygon.pairings)
+        return DrawnPolygon(group.geometry, group.polygon.vertices, group.word.letters, group.polygon.pairings)
     elements = group.atlas().isometry[1:]
     if group.geometry.curvature < 1:
         raise GeometryError(f"the group of '{group.word}' has no polygon to draw; use a PolygonGroup")
     if not len(elements):
         raise GeometryError(
-            f"the group of '{group.word}' has no polygon to draw: its cell is the whole sphere; draw another group, "
+            f"the group of '{group.word}' has no polygon to draw: its polygon is the whole sphere; draw another group, "
             "such as that of abAB"
         )
-    return _spherical_cell(group, elements)
+    return _spherical_polygon(group, elements)
 
 
-def _spherical_cell(group: Group, elements: Floats) -> Cell:
-    """The cell of the points of the sphere that are nearer to the origin than to all its images."""
+def _spherical_polygon(group: Group, elements: Floats) -> DrawnPolygon:
+    """The polygon of the points of the sphere that are nearer to the origin than to all its images."""
     geometry = group.geometry
     sides = geometry.origin - elements[:, :, 0]
     sides /= np.linalg.norm(sides, axis=1, keepdims=True)
@@ -100,7 +100,7 @@ def _spherical_cell(group: Group, elements: Floats) -> Cell:
     corners = corners[np.argsort(np.arctan2(corners[:, 2], corners[:, 1]))]
     ends = np.abs(corners @ sides.T) < _ON_SIDE
     across = (ends & np.roll(ends, -1, axis=0)).argmax(axis=1)
-    return Cell(geometry, corners, _numbered(elements[across]), elements[across], named=False)
+    return DrawnPolygon(geometry, corners, _numbered(elements[across]), elements[across], named=False)
 
 
 def _corners(sides: Floats) -> Floats:
@@ -114,16 +114,16 @@ def _corners(sides: Floats) -> Floats:
     return found[np.unique(np.round(found / _ON_SIDE), axis=0, return_index=True)[1]]
 
 
-def _half_sphere(group: Group, elements: Floats, side: Floats) -> Cell:
+def _half_sphere(group: Group, elements: Floats, side: Floats) -> DrawnPolygon:
     """A half, whose border is one mirror, or two sides that the antipodal map glues."""
     turn = group.geometry.carry(side)
     quarters = turn @ group.geometry.from_polar(np.pi / 2, np.pi / 2 * np.arange(4)).T
     if np.allclose(elements[0], -np.eye(3)):
-        return Cell(group.geometry, quarters.T, (1, 1), elements[[0, 0]], pieces=2)
-    return Cell(group.geometry, quarters.T, (1,), elements, pieces=4, named=False)
+        return DrawnPolygon(group.geometry, quarters.T, (1, 1), elements[[0, 0]], pieces=2)
+    return DrawnPolygon(group.geometry, quarters.T, (1,), elements, pieces=4, named=False)
 
 
-def _lune(geometry: Geometry, elements: Floats, sides: Floats, corners: Floats) -> Cell:
+def _lune(geometry: Geometry, elements: Floats, sides: Floats, corners: Floats) -> DrawnPolygon:
     """Two half great circles between antipodal points; their middles lie on the great circle between the two."""
     start, end = corners
     middles = np.cross(sides, start)
@@ -134,7 +134,7 @@ def _lune(geometry: Geometry, elements: Floats, sides: Floats, corners: Floats) 
     turns = np.cross(start, middles[across]) @ geometry.origin
     across = across[np.argsort(-turns)][[0, -1]]
     ring = np.stack([start, middles[across[0]], end, middles[across[1]]])
-    return Cell(geometry, ring, _numbered(elements[across]), elements[across], pieces=2, named=False)
+    return DrawnPolygon(geometry, ring, _numbered(elements[across]), elements[across], pieces=2, named=False)
 
 
 def _numbered(elements: Floats) -> tuple[int, ...]:

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from orbiframe import Polyhedron
+from orbiframe.compiled import compiled
 from orbiframe.meshes import triangulated
 from orbiframe_drawing.colours import channels
 from orbiframe_drawing.picture import Curve, Raster, polyline
@@ -160,7 +160,7 @@ class Solid3D:
         return np.asarray(nearest <= points[:, 2] * self._samples + allowed)
 
 
-@njit(cache=True)
+@compiled
 def _fill(at, light, depth, brightness):  # type: ignore[no-untyped-def]
     """Draw triangles at (F, 3, 3), in samples from the top left, with brightnesses (F, 3), nearest to the eye first."""
     rows, columns = depth.shape

@@ -27,7 +27,7 @@ class LiftedFaces:
 
 
 @dataclass(frozen=True, eq=False)
-class Copies:
+class FaceCopies:
     """Lifts of faces with one number of corners to one frame of X: corners (m, n, 3).
 
     home: (m,), whether the copy is the nearest to the origin of its face: one for every face.
@@ -79,7 +79,7 @@ class Tessellation:
         corners = np.einsum("fij,fkj->fki", triangulation.placement, triangulation.corners)
         return cls(triangulation.orbifold, (LiftedFaces(triangulation.patch, corners),))
 
-    def copies(self, radius: float, patch: int = 0, centre: Floats | None = None) -> Iterator[Copies]:
+    def copies(self, radius: float, patch: int = 0, centre: Floats | None = None) -> Iterator[FaceCopies]:
         """All lifts of faces of patches whose origins lie within a radius about `centre`, in a frame with it as origin.
 
         centre: (3,), in the frame of `patch`, by default its origin.
@@ -105,7 +105,7 @@ def _lifted(polyhedron: Polyhedron, triangulation: Triangulation, steps: Floats,
     return LiftedFaces(triangulation.patch[vertices[:, 0]], np.stack(corners, axis=1))
 
 
-def _copied(geometry: Geometry, faces: LiftedFaces, patches: Ints, isometry: Floats) -> Copies:
+def _copied(geometry: Geometry, faces: LiftedFaces, patches: Ints, isometry: Floats) -> FaceCopies:
     """The faces of every patch, moved to every copy of it."""
     copy, face = np.nonzero(patches[:, None] == faces.patch)
     corners = np.einsum("mij,mkj->mki", isometry[copy], faces.corners[face])
@@ -113,4 +113,4 @@ def _copied(geometry: Geometry, faces: LiftedFaces, patches: Ints, isometry: Flo
     order = np.lexsort((distance, face))
     home = np.zeros(len(face), dtype=np.bool_)
     home[order[np.unique(face[order], return_index=True)[1]]] = True
-    return Copies(corners, home)
+    return FaceCopies(corners, home)

@@ -14,7 +14,7 @@ from orbiframe_drawing.colours import GREY, INK, line_colour, tint
 from orbiframe_drawing.models import Model, model_of
 from orbiframe_drawing.page import WIDTH, Page
 from orbiframe_drawing.picture import Item, Picture, Shape, chained
-from orbiframe_drawing.tessellation import Copies, Tessellation
+from orbiframe_drawing.tessellation import FaceCopies, Tessellation
 from orbiframe_drawing.tiles import disc_area
 
 Floats = NDArray[np.float64]
@@ -72,7 +72,7 @@ def _require_few(tessellation: Tessellation, radius: float) -> None:
         )
 
 
-def _half_width(copies: list[Copies], model: Model) -> float:
+def _half_width(copies: list[FaceCopies], model: Model) -> float:
     """Half the width of a window round the dark faces and as much again, for models that fill the plane."""
     dark = np.concatenate([model.place(c.corners[c.home]).reshape(-1, 2) for c in copies])
     return 1.4 * float(np.abs(dark).max())
@@ -80,7 +80,7 @@ def _half_width(copies: list[Copies], model: Model) -> float:
 
 @dataclass(frozen=True, eq=False)
 class _TessellationPicture:
-    copies: list[Copies]
+    copies: list[FaceCopies]
     model: Model
     half_width: float
     width: float

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from orbiframe import Group, UsageError
-from orbiframe_drawing.polygon import Cell
+from orbiframe_drawing.polygon import DrawnPolygon
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -33,7 +33,7 @@ class Tiles:
     first: Bools
 
 
-def tiles_within(group: Group, cell: Cell, radius: float) -> Tiles:
+def tiles_within(group: Group, polygon: DrawnPolygon, radius: float) -> Tiles:
     """The tiles that meet the disc of a radius about the origin. Raises UsageError for too many."""
     if not radius >= 0:
         raise UsageError(f"a radius of {radius} was asked for; give a length that is not negative")
@@ -43,10 +43,10 @@ def tiles_within(group: Group, cell: Cell, radius: float) -> Tiles:
             f"about {estimate:.2g} tiles meet the disc of radius {radius:g}, and a picture shows at most {MOST_TILES}; "
             "take a smaller radius"
         )
-    return _with_words(cell, group.tiles(radius))
+    return _with_words(polygon, group.tiles(radius))
 
 
-def nearest_tiles(group: Group, cell: Cell, count: int) -> Tiles:
+def nearest_tiles(group: Group, polygon: DrawnPolygon, count: int) -> Tiles:
     """The tiles with the nearest centres, at most so many, all or none of those at one distance."""
     if not 1 <= count <= MOST_TILES:
         raise UsageError(f"{count} tiles were asked for; a picture shows 1 to {MOST_TILES}")
@@ -57,7 +57,7 @@ def nearest_tiles(group: Group, cell: Cell, count: int) -> Tiles:
     # All tiles with centres within the radius are there, but not all of those beyond.
     whole = int((distance <= radius).sum())
     ends = np.append(np.flatnonzero(np.diff(distance[:whole]) > _SAME_PLACE) + 1, whole)
-    return _with_words(cell, found[: ends[ends <= count].max()])
+    return _with_words(polygon, found[: ends[ends <= count].max()])
 
 
 def disc_area(curvature: int, radius: float) -> float:
@@ -77,9 +77,9 @@ def _radius_of_area(curvature: int, area: float) -> float:
     return float(np.arccosh(1 + area / (2 * np.pi)))
 
 
-def _with_words(cell: Cell, elements: Floats) -> Tiles:
+def _with_words(polygon: DrawnPolygon, elements: Floats) -> Tiles:
     """Lengths and first sides, by a walk from tile to tile across all sides."""
-    pairings = cell.neighbours
+    pairings = polygon.neighbours
     length, first = np.full(len(elements), -1), np.zeros((len(elements), len(pairings)), dtype=np.bool_)
     centres = cKDTree(elements[:, :, 0])
     level, steps = np.array([0]), 0

@@ -13,8 +13,9 @@ Floats = NDArray[np.float64]
 class FiniteGroup(Group):
     """The trivial group, or {e, antipodal map}: X/H is the sphere or the projective plane.
 
-    The cell is the whole sphere, or the closed hemisphere x0 >= 0, a cell of its own kind: it is no convex polygon.
-    Built from a geometry of curvature 1 and any word of one of the two surfaces; raises GeometryError otherwise.
+    The polygon is the whole sphere, or the closed hemisphere x0 >= 0, a polygon of its own kind: it is no convex
+    polygon. Built from a geometry of curvature 1 and any word of one of the two surfaces; raises GeometryError
+    otherwise.
     """
 
     def __init__(self, geometry: Geometry, word: Word) -> None:

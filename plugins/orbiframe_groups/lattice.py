@@ -1,4 +1,4 @@
-"""Groups of the Euclidean plane with a parallelogram as cell."""
+"""Groups of the Euclidean plane with a parallelogram as polygon."""
 
 from __future__ import annotations
 

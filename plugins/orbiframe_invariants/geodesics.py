@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from orbiframe import Geometry, GeometryError, Group, Orbifold, Points
 from orbiframe.orbifolds import Copies
-from orbiframe.planes import Spin
+from orbiframe.planes import PreciseIsometry
 from orbiframe_invariants.closed_geodesics import axes, translation_lengths
 
 Floats = NDArray[np.float64]
@@ -83,7 +83,7 @@ class Geodesics:
 
     @classmethod
     def of_group(cls, group: Group) -> Geodesics:
-        """The metric of X/H for a group, with the cell of the group as the one patch."""
+        """The metric of X/H for a group, with the domain of the group as the one patch."""
         word = group.word
         return cls(Orbifold(group.atlas(), word.euler_characteristic, word.orientable, group.area))
 
@@ -119,7 +119,7 @@ class Geodesics:
         over the length d in H^2.
         """
         v = np.asarray(velocity, dtype=float)
-        speed = self.geometry.norm(v)
+        speed = self.geometry.norm(x.x, v)
         still = speed == 0
         ahead = np.where(still[:, None], self.geometry.frame(x.x)[..., 0], v)
         patch, flag = np.array(x.patch, dtype=np.intp), self.geometry.flag(x.x, ahead)
@@ -137,20 +137,24 @@ class Geodesics:
         patch, flag = self._at_home(np.array(x.patch, dtype=np.intp), self.geometry.carry(x.x))
         return Points(patch, self.geometry.settle(flag[..., 0]))
 
-    def closed(self, deck: ArrayLike | Spin, patch: int = 0) -> ClosedGeodesic:
+    def closed(self, deck: ArrayLike | PreciseIsometry, patch: int = 0) -> ClosedGeodesic:
         """The shortest closed curve in the class of a deck transformation, a matrix (3, 3), seen from a patch.
 
-        In a named group `group.element_spin(word)` is the deck transformation of a loop, as a `Spin`. Raises
-        GeometryError for the identity and other isometries with a fixed point, whose loops can be contracted or run
-        round a singular point.
+        In a named group `group.precise_element(word)` is the deck transformation of a loop, as a `PreciseIsometry`.
+        Raises GeometryError for the identity and other isometries with a fixed point, whose loops can be contracted or
+        run round a singular point.
         """
-        spin = deck if isinstance(deck, Spin) else Spin.of_matrix(self.geometry.curvature, deck)
-        spin = Spin(spin.curvature, np.reshape(spin.a, 1), np.reshape(spin.b, 1), np.reshape(spin.reverses, 1))
-        length = float(translation_lengths(spin)[0])
+        precise = (
+            deck if isinstance(deck, PreciseIsometry) else PreciseIsometry.of_matrix(self.geometry.curvature, deck)
+        )
+        precise = PreciseIsometry(
+            precise.curvature, np.reshape(precise.a, 1), np.reshape(precise.b, 1), np.reshape(precise.reverses, 1)
+        )
+        length = float(translation_lengths(precise)[0])
         if not length > _BEYOND:
             raise GeometryError("a deck transformation with a fixed point has no closed geodesic; give a longer word")
-        at, flag = self._at_home(np.array([patch]), _axis_flag(self.geometry, spin)[None])
-        return ClosedGeodesic(self, length, bool(spin.reverses[0]), Points(at, flag[..., 0]), flag[..., 1])
+        at, flag = self._at_home(np.array([patch]), _axis_flag(self.geometry, precise)[None])
+        return ClosedGeodesic(self, length, bool(precise.reverses[0]), Points(at, flag[..., 0]), flag[..., 1])
 
     def nearest_lift(self, x: Points, y: Points) -> Floats:
         """The lift of y nearest to x, in the frame of the patch of x, (n, 3).
@@ -244,7 +248,7 @@ def _ragged(first: Ints, last: Ints) -> tuple[Ints, Ints]:
     return row, np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count) + np.repeat(first, count)
 
 
-def _axis_flag(geometry: Geometry, spin: Spin) -> Floats:
+def _axis_flag(geometry: Geometry, precise: PreciseIsometry) -> Floats:
     """The isometry that takes the origin to the nearest point of the axis, and (0, 1, 0) to the way things move there.
 
     For the antipodal map every great circle is an axis; the one through the origin in the direction (0, 1, 0).
@@ -252,8 +256,8 @@ def _axis_flag(geometry: Geometry, spin: Spin) -> Floats:
     k = geometry.curvature
     if k > 0:
         return np.eye(3)
-    height, *normal = axes(spin)[0]
+    height, *normal = axes(precise)[0]
     foot = geometry.project(np.array([1 - k * height**2, *(-height * np.array(normal))]))
     along = geometry.turn(foot, np.array([k * height, *normal]))
-    moved = geometry.log(foot, geometry.act(spin.matrix[0], foot))
-    return geometry.flag(foot, along * np.sign(geometry.inner(along, moved)))
+    moved = geometry.log(foot, geometry.act(precise.matrix[0], foot))
+    return geometry.flag(foot, along * np.sign(geometry.inner(foot, along, moved)))

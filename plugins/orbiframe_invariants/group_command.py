@@ -134,10 +134,10 @@ def _computed(args: argparse.Namespace, group: Group, registry: Registry) -> dic
         shortest = systole(group)
         found["systole"] = {"length": shortest.length, "multiplicity": shortest.multiplicity}
     if args.spectrum:
-        from orbiframe.delaunay import cell_triangulation
+        from orbiframe.delaunay import polygon_triangulation
         from orbiframe_invariants.laplace_spectrum import laplace_spectrum
 
-        values = laplace_spectrum(cell_triangulation(group), _polynomials(registry), args.spectrum)
+        values = laplace_spectrum(polygon_triangulation(group), _polynomials(registry), args.spectrum)
         found["spectrum"] = [{"value": e.value, "multiplicity": e.multiplicity, "error": e.error} for e in values]
     if args.draw:
         found["picture"] = str(args.draw)
@@ -151,12 +151,12 @@ def _draw(args: argparse.Namespace, group: Group, registry: Registry, about: dic
     """Write the picture, and say which eigenvalue its function has."""
     function = None
     if args.function is not None:
-        from orbiframe.delaunay import cell_triangulation
+        from orbiframe.delaunay import polygon_triangulation
         from orbiframe.functions import lifted
         from orbiframe_invariants.laplace_spectrum import eigenfunction
 
         space, coefficients, about["eigenvalue"] = eigenfunction(
-            cell_triangulation(group), _polynomials(registry), args.function
+            polygon_triangulation(group), _polynomials(registry), args.function
         )
         function = lifted(space, coefficients)
     draw_group = registry.load("picture", PICTURE)

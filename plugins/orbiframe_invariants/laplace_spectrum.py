@@ -16,7 +16,6 @@ from orbiframe.triangulations import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
 
-_Family = Callable[[GeodesicTriangulation, int], ElementBasis]
 
 _LONGEST_EDGE = 0.8
 # Edges resolve a wave where edge length times square root of the eigenvalue stays below this, for degrees from 8 on.
@@ -56,7 +55,7 @@ def laplace_spectrum(domain: GeodesicTriangulation, family: Family, count: int) 
         number *= 2
 
 
-def _needed(domain: GeodesicTriangulation, family: _Family, count: int) -> int:
+def _needed(domain: GeodesicTriangulation, family: Family, count: int) -> int:
     """How many eigenvalues hold `count` different ones and begin the next, by a first look in a smaller space."""
     number = count + 8
     while True:

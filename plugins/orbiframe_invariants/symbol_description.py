@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from orbiframe import Registry, UsageError
 
 if TYPE_CHECKING:
-    from orbiframe.groups import SphericalGroup, SymmetryGroup
-    from orbiframe.words import Signature
+    from orbiframe.groups import ConwayGroup, SphericalGroup
+    from orbiframe.words import ConwaySymbol
 
 
 def is_symbol(text: str) -> bool:
@@ -18,21 +18,21 @@ def is_symbol(text: str) -> bool:
     return bool(re.fullmatch(r"[\d*∗xX×o∘(),\s]+", text)) and not re.search("x.*X|X.*x", text)
 
 
-def symbol_group(args: argparse.Namespace, registry: Registry) -> SymmetryGroup | SphericalGroup:
+def symbol_group(args: argparse.Namespace, registry: Registry) -> ConwayGroup | SphericalGroup:
     """The group of the orbifold of a symbol."""
     from orbiframe.groups import orbifold_group
-    from orbiframe.words import Signature
+    from orbiframe.words import ConwaySymbol
 
-    signature = Signature.parse(args.word)
+    signature = ConwaySymbol.parse(args.word)
     _require_supported(args, signature)
     return orbifold_group(registry.geometry(signature.curvature), signature)
 
 
-def describe_symbol(group: SymmetryGroup | SphericalGroup, text: str) -> dict[str, Any]:
-    """The orbifold of a symbol, its group and its cell."""
-    from orbiframe.words import Signature, text_of
+def describe_symbol(group: ConwayGroup | SphericalGroup, text: str) -> dict[str, Any]:
+    """The orbifold of a symbol, its group and its domain."""
+    from orbiframe.words import ConwaySymbol, text_of
 
-    signature = Signature.parse(text)
+    signature = ConwaySymbol.parse(text)
     return {
         "symbol": str(signature),
         "orbifold": {
@@ -64,7 +64,7 @@ def symbol_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def _require_supported(args: argparse.Namespace, signature: Signature) -> None:
+def _require_supported(args: argparse.Namespace, signature: ConwaySymbol) -> None:
     """Raise UsageError for what only gluing words, or only infinite groups, have."""
     if args.prove:
         raise UsageError(f"--prove is for gluing words, such as abABcdCD, and '{signature}' is a symbol; leave it out")
@@ -73,6 +73,6 @@ def _require_supported(args: argparse.Namespace, signature: Signature) -> None:
             raise UsageError(f"--{name} is for infinite groups; '{signature}' has {signature.order} elements")
 
 
-def _kind(group: SymmetryGroup | SphericalGroup, label: int) -> str:
+def _kind(group: ConwayGroup | SphericalGroup, label: int) -> str:
     """What a generator does."""
     return group.geometry.classify(group.generator(label), 1e-7)

@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 
 from orbiframe import FundamentalPolygon, GeometryError
 from orbiframe.groups import Elements, Generators, PolygonGroup, grown_elements, lettered_pairings
-from orbiframe.planes import Spin
+from orbiframe.planes import PreciseIsometry
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -28,8 +28,8 @@ def elements_by_length(group: PolygonGroup, length: int, *, most: int = _MOST) -
     other polygons the products of each length are compared with those before. Raises GeometryError where rounding
     decides, or where there are more than `most` elements.
     """
-    spin, letters = lettered_pairings(group)
-    steps = Generators(group.geometry, spin, tuple(letters), np.array(group.word.mate))
+    precise, letters = lettered_pairings(group)
+    steps = Generators(group.geometry, precise, tuple(letters), np.array(group.word.mate))
     if even_corners(group.polygon):
         return grown_elements(steps, -group.polygon.sides, len(letters), np.inf, length, 1000, most)
     return _searched(steps, length, most)
@@ -58,28 +58,28 @@ def even_corners(polygon: FundamentalPolygon) -> bool:
 def _searched(steps: Generators, length: int, most: int) -> Elements:
     """Level by level: a product of an element of length k has length k - 1, k or k + 1."""
     k, count = steps.geometry.curvature, len(steps.mate)
-    first = Spin.of_matrix(k, np.eye(3)[None])
+    first = PreciseIsometry.of_matrix(k, np.eye(3)[None])
     spins, parents, letters = [first], [np.array([-1])], [np.array([-1])]
     start, level, before = 0, first, first[np.zeros(0, dtype=np.intp)]
     for _ in range(length):
         row, step = np.divmod(np.arange(len(level.a) * count), count)
-        products = level[row] @ steps.spin[step]
-        new = _new(Spin.joined([before, level]), products)
+        products = level[row] @ steps.precise[step]
+        new = _new(PreciseIsometry.joined([before, level]), products)
         before, level = level, products[new]
         spins, parents, letters = [*spins, level], [*parents, start + row[new]], [*letters, step[new]]
         start += len(before.a)
         if start + len(level.a) > most:
             raise GeometryError(f"there are more than {most} elements; ask for fewer, or raise most")
-    every = Spin.joined(spins)
+    every = PreciseIsometry.joined(spins)
     a, b = (part.astype(np.complex128) for part in (every.a, every.b))
     return Elements(
         steps, a, b, every.reverses, np.concatenate(parents).astype(np.int32), np.concatenate(letters).astype(np.int16)
     )
 
 
-def _new(known: Spin, products: Spin) -> Ints:
+def _new(known: PreciseIsometry, products: PreciseIsometry) -> Ints:
     """The products that are not known, each once."""
-    flat = Spin.joined([known, products]).matrix.reshape(-1, 9)
+    flat = PreciseIsometry.joined([known, products]).matrix.reshape(-1, 9)
     tree = cKDTree(flat / np.abs(flat).max(axis=1, keepdims=True))
     pairs = tree.query_pairs(_SAME, p=np.inf, output_type="ndarray")
     if len(tree.query_pairs(100 * _SAME, p=np.inf, output_type="ndarray")) > len(pairs):

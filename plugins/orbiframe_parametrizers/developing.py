@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from orbiframe import Atlas, Geometry, MapError, Orbifold, Polyhedron, SurfaceType, Triangulation
+from orbiframe.compiled import compiled, copy, multiply
 from orbiframe.meshes import covering_points, dijkstra_forest, edge_graph
 from orbiframe_parametrizers.relations import with_relations
 
@@ -17,6 +17,7 @@ Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
 _SAME = 1e-4
+_SPANNED, _FACTOR = np.log(1e5), np.log(400)
 
 
 def developed(
@@ -73,7 +74,7 @@ def _edge_directions(mesh: Polyhedron, angles: Floats) -> tuple[Floats, Floats, 
     return first, last[mesh.next], sense
 
 
-@njit(cache=True)
+@compiled
 def _walked(tail, following, before, twin, same, angles, count):  # type: ignore[no-untyped-def]
     """Angles at which the two edges of every corner leave its vertex, and the sense of the corner."""
     first, last = np.empty(len(tail)), np.empty(len(tail))
@@ -137,19 +138,14 @@ def _edge_products(geometry: Geometry, outgoing: Floats, lengths: Floats, mirror
     return product
 
 
-@njit(cache=True)
+@compiled
 def _labels(frames, inverses, steps, tail, head):  # type: ignore[no-untyped-def]
     """frames[tail] steps inverses[head], (E, 3, 3)."""
     labels = np.empty_like(steps)
     half = np.empty((3, 3))
     for edge in range(len(steps)):
-        a, b, c = frames[tail[edge]], steps[edge], inverses[head[edge]]
-        for i in range(3):
-            for j in range(3):
-                half[i, j] = a[i, 0] * b[0, j] + a[i, 1] * b[1, j] + a[i, 2] * b[2, j]
-        for i in range(3):
-            for j in range(3):
-                labels[edge, i, j] = half[i, 0] * c[0, j] + half[i, 1] * c[1, j] + half[i, 2] * c[2, j]
+        multiply(frames[tail[edge]], steps[edge], half)
+        multiply(half, inverses[head[edge]], labels[edge])
     return labels
 
 
@@ -159,10 +155,11 @@ def _patch_frames(
     """The patch of every vertex, (V,), and the isometry from its own frame to that of its patch, (V, 3, 3).
 
     Distance is the length in X plus 1.5 times the length in space over the size of the mesh: where the map crowds
-    much of the surface into little of X/H, patches shrink with the scale and coordinates keep their digits.
+    much of the surface into little of X/H, patches shrink with the scale and coordinates keep their digits. Where the
+    scale changes by many digits along a thin limb, so much of it as changes it by a factor of 400 is a distance of 1.
     """
     scale = 1.5 / max(mesh.diagonal, np.finfo(float).tiny)
-    graph = edge_graph(mesh, lengths + scale * mesh.edge_lengths)
+    graph = edge_graph(mesh, lengths + scale * mesh.edge_lengths + _scale_steps(mesh, lengths))
     forest = dijkstra_forest(graph, covering_points(graph, patch_radius))
     last = np.flatnonzero(forest.link >= 0)
     halfedge, backward = graph.halfedge[forest.link[last]], graph.backward[forest.link[last]]
@@ -172,19 +169,29 @@ def _patch_frames(
     return forest.owner, onward
 
 
-@njit(cache=True)
+def _scale_steps(mesh: Polyhedron, lengths: Floats) -> Floats:
+    """How much the scale of a map changes along each edge, (H,): a sixth of the change of its logarithm.
+
+    0 where the scale spans less than five digits: coordinates have enough of them.
+    """
+    count = len(mesh.vertices)
+    in_x, in_space = (np.bincount(mesh.tail, weights=part, minlength=count) for part in (lengths, mesh.edge_lengths))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        scale = np.log(in_x / in_space)
+    if not np.isfinite(scale).all() or np.ptp(scale) < _SPANNED:
+        return np.zeros(len(lengths))
+    return np.asarray(np.abs(scale[mesh.head] - scale[mesh.tail]) / _FACTOR)
+
+
+@compiled
 def _carry(order, parent, frames):  # type: ignore[no-untyped-def]
     """Frames seen from those of their parents become frames seen from their roots."""
     own = np.empty((3, 3))
     for vertex in order:
         if parent[vertex] < 0:
             continue
-        own[:] = frames[vertex]
-        before = frames[parent[vertex]]
-        for i in range(3):
-            for j in range(3):
-                total = before[i, 0] * own[0, j] + before[i, 1] * own[1, j] + before[i, 2] * own[2, j]
-                frames[vertex, i, j] = total
+        copy(frames[vertex], own)
+        multiply(frames[parent[vertex]], own, frames[vertex])
 
 
 def _classes(geometry: Geometry, tail: Ints, head: Ints, labels: Floats) -> tuple[Ints, Ints, Ints, Floats]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from orbiframe import Atlas, Geometry, MapError, Orbifold, Polyhedron, SurfaceType, Triangulation, surface_type
 from orbiframe.groups import MarkedGroup
-from orbiframe.planes import Spin
+from orbiframe.planes import PreciseIsometry
 from orbiframe_parametrizers.developing import in_patches, on_both_halfedges
 from orbiframe_parametrizers.edge_weights import WEIGHTS
 from orbiframe_parametrizers.embedding import embedded
@@ -35,7 +35,7 @@ def equivariant(
 ) -> Triangulation:
     """The harmonic map to the surface X/H of a named group, in the homotopy class of the marking.
 
-    All vertices start at the centre of the cell of H, and Newton's method unfolds them (section 3.4, steps 1 to 3).
+    All vertices start at the centre of the polygon of H, and Newton's method unfolds them (section 3.4, steps 1 to 3).
     The frames of neighbours in this map give patches near the origin, in which the map is harmonic once more, with all
     digits. polyhedron: a closed connected triangle mesh with chi <= 0, coherently oriented if orientable; geometry: of
     the group; group: a marking of this mesh and a group with its word. weights, even_areas: as for the map `harmonic`.
@@ -95,12 +95,12 @@ def _layout(mesh: Polyhedron, geometry: Geometry, group: MarkedGroup, surface: S
 class _CornerLifts(NamedTuple):
     """For every corner the deck transformation from the lift of its vertex to the corner of the lifted face.
 
-    Faces are lifted into the cell. The lift of a vertex is that in one of its corners, at position p; at position c the
-    vertex is seen by g_c g_p^-1, the identity where p and c are the same. element: the distinct ones, of which the
+    Faces are lifted into the polygon. The lift of a vertex is that in one of its corners, at position p; at position c
+    the vertex is seen by g_c g_p^-1, the identity where p and c are the same. element: the distinct ones, of which the
     first is the identity; number: (H,), that of every corner.
     """
 
-    element: Spin
+    element: PreciseIsometry
     number: Ints
 
     @classmethod
@@ -129,7 +129,7 @@ class _CornerLifts(NamedTuple):
 
 
 def _unfolded(mesh: Polyhedron, geometry: Geometry, lifts: _CornerLifts, surface: SurfaceType) -> Floats:
-    """The points (V, 3) of the harmonic map with positive weights, in the frame of the cell, to some digits."""
+    """The points (V, 3) of the harmonic map with positive weights, in the frame of the polygon, to some digits."""
     isometry, transition = lifts.isometries(mesh)
     ends = np.zeros(len(isometry), dtype=np.intp)
     atlas = Atlas(geometry, np.array([np.inf]), ends, ends, ends, isometry)
@@ -147,7 +147,7 @@ def _steps(mesh: Polyhedron, geometry: Geometry, lifts: _CornerLifts, points: Fl
 
     The frame at a vertex is carried from the origin to its point along a geodesic; no step is longer than its edge.
     """
-    at_vertex = Spin.translation(geometry.curvature, points)
+    at_vertex = PreciseIsometry.translation(geometry.curvature, points)
     edges = np.flatnonzero(mesh.representative)
     here, there = (lifts.element[lifts.number[h]] @ at_vertex[mesh.tail[h]] for h in (edges, mesh.next[edges]))
     return on_both_halfedges(mesh, geometry, edges, (here.inverse @ there).matrix)

@@ -43,13 +43,13 @@ def _aligned(flat: Triangulation) -> Triangulation:
     turn = _frame_turns(atlas.tail, atlas.head, atlas.isometry[:, 1:, 1:], atlas.patch_count)
     if not orbifold.orientable:
         turn = _along_glide(turn, atlas.tail, atlas.head, atlas.isometry[:, 1:, 1:]) @ turn
-    spin = np.tile(np.eye(3), (atlas.patch_count, 1, 1))
-    spin[:, 1:, 1:] = turn
+    precise = np.tile(np.eye(3), (atlas.patch_count, 1, 1))
+    precise[:, 1:, 1:] = turn
     isometry = atlas.isometry.copy()
-    isometry[1:] = spin[atlas.tail[1:]] @ isometry[1:] @ np.swapaxes(spin[atlas.head[1:]], 1, 2)
+    isometry[1:] = precise[atlas.tail[1:]] @ isometry[1:] @ np.swapaxes(precise[atlas.head[1:]], 1, 2)
     # What is left of the turning part is rounding: a diagonal matrix of signs.
     isometry[:, 1:, 1:] = np.round(isometry[:, 1:, 1:])
-    points = np.einsum("vij,vj->vi", spin[flat.patch], flat.points)
+    points = np.einsum("vij,vj->vi", precise[flat.patch], flat.points)
     return replace(flat, orbifold=replace(orbifold, atlas=replace(atlas, isometry=isometry)), points=points)
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from orbiframe import MapError, Polyhedron
+from orbiframe.compiled import compiled, copy, exchange, multiply
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -77,12 +77,12 @@ class Flippable:
         return forth
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(may_divide_by_zero=True)
 def _following(h: int) -> int:
     return h + 1 if h % 3 < 2 else h - 2
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(may_divide_by_zero=True)
 def _cosine_sum(x: Floats, h: int, t: int) -> float:
     """Twice the sum of the two opposite cosines in terms of x; negative where the edge is not Delaunay."""
     e, a, b = x[h], x[_following(h)], x[_following(_following(h))]
@@ -90,7 +90,7 @@ def _cosine_sum(x: Floats, h: int, t: int) -> float:
     return float((a * a + b * b - e * e) / (a * b) + (c * c + d * d - e * e) / (c * d))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(may_divide_by_zero=True)
 def _reverse_face(tail: Ints, twin: Ints, same: Bools, x: Floats, face: int) -> None:
     """Run through a face the other way: slot 0 keeps its edge, slots 1 and 2 exchange theirs."""
     s, first, second = 3 * face, 3 * face + 1, 3 * face + 2
@@ -110,7 +110,7 @@ def _reverse_face(tail: Ints, twin: Ints, same: Bools, x: Floats, face: int) -> 
             same[partner] = not flags[k]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(may_divide_by_zero=True)
 def _flat_diagonal(e: float, ik: float, jk: float, im: float, jm: float) -> float:
     """The distance of k and m on both sides of an edge i-j of length e in the plane."""
     along_k, along_m = (ik * ik - jk * jk + e * e) / (2 * e), (im * im - jm * jm + e * e) / (2 * e)
@@ -118,7 +118,7 @@ def _flat_diagonal(e: float, ik: float, jk: float, im: float, jm: float) -> floa
     return float(np.hypot(along_k - along_m, np.sqrt(above) + np.sqrt(below)))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(may_divide_by_zero=True)
 def _flip(tail: Ints, twin: Ints, same: Bools, x: Floats, h: int, flat: bool) -> None:
     """Replace the edge i-j in slot h by k-m: faces (i, j, k) and (j, i, m) become (m, k, i) and (k, m, j)."""
     t = twin[h]
@@ -147,7 +147,7 @@ def _flip(tail: Ints, twin: Ints, same: Bools, x: Floats, h: int, flat: bool) ->
     x[h] = x[t] = x_new
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(may_divide_by_zero=True)
 def _make_delaunay(tail: Ints, twin: Ints, same: Bools, x: Floats, flat: bool, limit: int) -> Ints:
     size = len(tail)
     queue = [h for h in range(size) if h < twin[h]]
@@ -181,44 +181,34 @@ def _make_delaunay(tail: Ints, twin: Ints, same: Bools, x: Floats, flat: bool, l
     return moves
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(may_divide_by_zero=True)
 def _undo(tail: Ints, twin: Ints, same: Bools, log: Ints, forth: Floats, back: Floats) -> None:
     """Undo the moves, last first; the matrices follow their halfedges, and each new one is a product of two."""
     idle = np.ones(len(tail))
-    product = np.empty((3, 3))
-    reverse = np.empty((3, 3))
+    product, reverse = np.empty((3, 3)), np.empty((3, 3))
     for n in range(len(log) - 1, -1, -1):
         if log[n, 1] == 1:
             face = log[n, 0]
             _reverse_face(tail, twin, same, idle, face)
-            for s in (3 * face, 3 * face + 1, 3 * face + 2):
-                reverse[:] = forth[s]
-                forth[s] = back[s]
-                back[s] = reverse
-            reverse[:] = forth[3 * face + 1]
-            forth[3 * face + 1] = forth[3 * face + 2]
-            forth[3 * face + 2] = reverse
-            reverse[:] = back[3 * face + 1]
-            back[3 * face + 1] = back[3 * face + 2]
-            back[3 * face + 2] = reverse
+            for s in range(3 * face, 3 * face + 3):
+                exchange(forth[s], back[s])
+            exchange(forth[3 * face + 1], forth[3 * face + 2])
+            exchange(back[3 * face + 1], back[3 * face + 2])
             continue
         h = log[n, 0]
         t = twin[h]
         hn, hp = _following(h), _following(_following(h))
         tn, tp = _following(t), _following(_following(t))
-        for a in range(3):
-            for b in range(3):
-                product[a, b] = 0.0
-                reverse[a, b] = 0.0
-                for c in range(3):
-                    product[a, b] += forth[hp, a, c] * forth[tn, c, b]
-                    reverse[a, b] += back[tn, a, c] * back[hp, c, b]
+        multiply(forth[hp], forth[tn], product)
+        multiply(back[tn], back[hp], reverse)
         _unflip(tail, twin, same, forth, back, h, t, hn, hp, tn, tp)
-        forth[h], back[h] = product, reverse
-        forth[t], back[t] = reverse, product
+        copy(product, forth[h])
+        copy(reverse, back[h])
+        copy(reverse, forth[t])
+        copy(product, back[t])
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(may_divide_by_zero=True)
 def _unflip(
     tail: Ints, twin: Ints, same: Bools, forth: Floats, back: Floats, h: int, t: int, hn: int, hp: int, tn: int, tp: int
 ) -> None:
@@ -235,10 +225,13 @@ def _unflip(
             if twin[sources[n]] == sources[other]:
                 partner = targets[other]
         partners[n], flags[n] = partner, same[sources[n]]
-        a[n], b[n] = forth[sources[n]], back[sources[n]]
+        copy(forth[sources[n]], a[n])
+        copy(back[sources[n]], b[n])
     for n in range(4):
         s = targets[n]
-        twin[s], same[s], forth[s], back[s] = partners[n], flags[n], a[n], b[n]
+        twin[s], same[s] = partners[n], flags[n]
         twin[partners[n]] = s
+        copy(a[n], forth[s])
+        copy(b[n], back[s])
     tail[h], tail[hn], tail[hp] = i, j, k
     tail[t], tail[tn], tail[tp] = j, i, m

@@ -19,7 +19,7 @@ def orbiframe_components() -> list[Component]:
             "parametrizer",
             "equivariant",
             "orbiframe_parametrizers.equivariant:equivariant",
-            "chi <= 0: harmonic map to a named group, from the centre of its cell",
+            "chi <= 0: harmonic map to a named group, from the centre of its polygon",
         ),
         Component(
             "parametrizer",
@@ -33,4 +33,12 @@ def orbiframe_components() -> list[Component]:
             "orbiframe_parametrizers.regular_faces:regular_faces",
             "faces in X/H as regular as possible, squares from quadrilaterals, by Newton on a shape energy",
         ),
+    ]
+
+
+@hookimpl
+def orbiframe_warm_up() -> list[str]:
+    """A map to a named group; the others are what a fit does by itself."""
+    return [
+        "fit double_torus.off -o out.ply --quiet --group regular-polygon",
     ]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from numba import int64, njit, uint64
+from numpy import int64, uint64
 
+from orbiframe.compiled import compiled
 from orbiframe_polygons.powers import LEAST
 
 NEWLINE, BLANK, CONTINUED = 10, 32, 11
@@ -12,7 +13,7 @@ DIGITS = 19
 UNKNOWN = 0xFFFFFFFFFFFFFFFF
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def high_and_low(a, b):  # type: ignore[no-untyped-def]
     """The upper and the lower 64 bits of a product of two uint64."""
     half, mask = uint64(32), uint64(0xFFFFFFFF)
@@ -22,7 +23,7 @@ def high_and_low(a, b):  # type: ignore[no-untyped-def]
     return a1 * b1 + (p01 >> half) + (p10 >> half) + (middle >> half), (middle << half) | (p00 & mask)
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def _leading_zeros(x):  # type: ignore[no-untyped-def]
     n = 0
     for step in (32, 16, 8, 4, 2, 1):
@@ -32,7 +33,7 @@ def _leading_zeros(x):  # type: ignore[no-untyped-def]
     return n
 
 
-@njit(cache=True)
+@compiled
 def nearest_bits(mantissa, exponent, powers):  # type: ignore[no-untyped-def]
     """The bits of the float64 nearest to mantissa · 10^exponent; UNKNOWN where this way cannot tell.
 
@@ -70,7 +71,7 @@ def nearest_bits(mantissa, exponent, powers):  # type: ignore[no-untyped-def]
     return (bits & ~(uint64(1) << uint64(52))) | (uint64(binary) << uint64(52))
 
 
-@njit(cache=True)
+@compiled
 def parse_words(data, powers, values, bits, hard):  # type: ignore[no-untyped-def]
     """Read every word of a text as a decimal number; `bits` are those of `values`.
 
@@ -111,7 +112,7 @@ def parse_words(data, powers, values, bits, hard):  # type: ignore[no-untyped-de
                 at += 1
             start, power = at, 0
             while at < size and 48 <= data[at] <= 57:
-                power = min(power * 10 + int64(data[at] - 48), 99999)
+                power = min(power * 10 + data[at] - 48, 99999)
                 at += 1
             good = at > start
             exponent += -power if below else power
@@ -131,7 +132,7 @@ def parse_words(data, powers, values, bits, hard):  # type: ignore[no-untyped-de
     return count, left
 
 
-@njit(cache=True)
+@compiled
 def find_lines(data, begin, end, number, words):  # type: ignore[no-untyped-def]
     """The lines that are not blank: first word, end, number of line ends before, and words of each. Returns how many.
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from numba import int64, njit, uint64
+from numpy import int64, uint64
 
+from orbiframe.compiled import compiled
 from orbiframe_polygons.compiled_numbers import high_and_low
 from orbiframe_polygons.powers import LEAST
 
@@ -11,7 +12,7 @@ from orbiframe_polygons.powers import LEAST
 WIDEST = 24
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def _rounded_to_odd(powers, row, x):  # type: ignore[no-untyped-def]
     """The upper 64 bits of power · x, with the last bit set where something was cut off."""
     carried, _ = high_and_low(powers[row, 1], x)
@@ -22,7 +23,7 @@ def _rounded_to_odd(powers, row, x):  # type: ignore[no-untyped-def]
     return high | uint64(low > uint64(1))
 
 
-@njit(cache=True)
+@compiled
 def shortest(bits, powers):  # type: ignore[no-untyped-def]
     """Digits and power of ten, digits · 10^power, of a positive finite float64 given by its bits.
 
@@ -59,7 +60,7 @@ def shortest(bits, powers):  # type: ignore[no-untyped-def]
     return s + uint64(up), k
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def _put_digits(out, at, number, count):  # type: ignore[no-untyped-def]
     """The last digits of a number."""
     for place in range(at + count - 1, at - 1, -1):
@@ -69,7 +70,7 @@ def _put_digits(out, at, number, count):  # type: ignore[no-untyped-def]
     return at + count
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def _digit_count(number):  # type: ignore[no-untyped-def]
     count = 1
     while number >= uint64(10):
@@ -78,13 +79,13 @@ def _digit_count(number):  # type: ignore[no-untyped-def]
     return count
 
 
-@njit(cache=True)
+@compiled
 def put_whole(out, at, number):  # type: ignore[no-untyped-def]
     """A whole number that is not negative, as text. Returns where it ends."""
     return _put_digits(out, at, uint64(number), _digit_count(uint64(number)))
 
 
-@njit(cache=True)
+@compiled
 def put_number(out, at, bits, powers):  # type: ignore[no-untyped-def]
     """A finite float64, given by its bits, as Python writes it. Returns where it ends."""
     if bits >> uint64(63):
@@ -115,7 +116,7 @@ def put_number(out, at, bits, powers):  # type: ignore[no-untyped-def]
     return at
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def _put_split(out, at, digits, count, point):  # type: ignore[no-untyped-def]
     """Digits with a point among them."""
     end = _put_digits(out, at + 1, digits, count)
@@ -125,7 +126,7 @@ def _put_split(out, at, digits, count, point):  # type: ignore[no-untyped-def]
     return end
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def _put_scientific(out, at, digits, count, exponent):  # type: ignore[no-untyped-def]
     at = _put_digits(out, at, digits, 1) if count == 1 else _put_split(out, at, digits, count, 1)
     out[at], out[at + 1] = 101, 45 if exponent < 0 else 43
@@ -133,7 +134,7 @@ def _put_scientific(out, at, digits, count, exponent):  # type: ignore[no-untype
     return _put_digits(out, at + 2, size, max(2, _digit_count(size)))
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def _put_bytes(out, at, source, first, last):  # type: ignore[no-untyped-def]
     for place in range(first, last):
         out[at] = source[place]
@@ -141,7 +142,7 @@ def _put_bytes(out, at, source, first, last):  # type: ignore[no-untyped-def]
     return at
 
 
-@njit(cache=True)
+@compiled
 def put_rows(out, powers, lead, counted, twice, offsets, numbers, glue, glued, bits, whole):  # type: ignore[no-untyped-def]
     """Rows of text: a lead or a count, whole numbers, then the columns of a table with the glue before, between, after.
 

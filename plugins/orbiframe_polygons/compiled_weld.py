@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from numba import njit, uint64
-from numpy import full, int32
+from numpy import full, int32, uint64
+
+from orbiframe.compiled import compiled
 
 START = 2**12
 # Most corners come again soon: a small table of late points stays in the fastest memory.
 LATE = 2**13
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def _code(x, y, z):  # type: ignore[no-untyped-def]
     odd, half = uint64(0x9E3779B97F4A7C15), uint64(32)
     code = uint64(x) * odd
@@ -19,7 +20,7 @@ def _code(x, y, z):  # type: ignore[no-untyped-def]
     return code ^ (code >> half)
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def _find(table, code, unique, x, y, z):  # type: ignore[no-untyped-def]
     """The slot of a point, or the free one where it belongs."""
     mask = uint64(len(table) - 1)
@@ -29,12 +30,12 @@ def _find(table, code, unique, x, y, z):  # type: ignore[no-untyped-def]
     return slot
 
 
-@njit(inline="always")
+@compiled(inline=True)
 def _is_at(unique, number, x, y, z):  # type: ignore[no-untyped-def]
     return unique[number, 0] == x and unique[number, 1] == y and unique[number, 2] == z
 
 
-@njit(cache=True)
+@compiled
 def number_points(bits, minus_zero, unique, place):  # type: ignore[no-untyped-def]
     """Number the different points by their bits, (n, m, 3), in the order in which they first occur.
 
@@ -66,7 +67,7 @@ def number_points(bits, minus_zero, unique, place):  # type: ignore[no-untyped-d
     return count
 
 
-@njit(cache=True)
+@compiled
 def _grown(unique, count, size):  # type: ignore[no-untyped-def]
     """A larger table of the points known so far."""
     table = full(size, -1, int32)

@@ -62,3 +62,14 @@ def orbiframe_components() -> list[Component]:
 def _module(module: str, kind: str) -> str:
     """The module of a reader or writer: off_reader, or reader in a folder of its own."""
     return f"{module}{kind}" if module.endswith(".") else f"{module}_{kind}"
+
+
+@hookimpl
+def orbiframe_warm_up() -> list[str]:
+    """Large texts, read and written."""
+    return [
+        "convert large.off large.obj",
+        "info large.obj",
+        "convert large.off large.stl",
+        "info large.stl",
+    ]

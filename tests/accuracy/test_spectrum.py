@@ -15,7 +15,7 @@ from orbiframe_groups.lattice import lattice_group
 from orbiframe_groups.regular_polygon import regular_polygon_group
 from orbiframe_invariants.laplace_spectrum import laplace_spectrum
 
-from orbiframe.delaunay.polygon_fan import cell_triangulation
+from orbiframe.delaunay.polygon_fan import polygon_triangulation
 from orbiframe.errors import FitError
 from orbiframe.words.word import Word
 
@@ -38,7 +38,7 @@ KNOWN = {
 @cache
 def spectrum(text, count):
     geometry, group, *_ = KNOWN[text]
-    domain = cell_triangulation(group(geometry(), Word.parse(text)))
+    domain = polygon_triangulation(group(geometry(), Word.parse(text)))
     return laplace_spectrum(domain, lambda d, degree: Bernstein(d.orbifold, d, degree=degree), count)
 
 

@@ -10,11 +10,11 @@ from hypothesis import given, settings, strategies as st
 from lifted_sites import WORDS, delaunay_areas, group_of, random_sites
 
 from orbiframe.delaunay.lawson_flips import wants_flip
-from orbiframe.delaunay.point_walk import locate
-from orbiframe.delaunay.polygon_fan import cell_triangulation
+from orbiframe.delaunay.point_walk import find
+from orbiframe.delaunay.polygon_fan import polygon_triangulation
 from orbiframe.delaunay.site_triangulation import delaunay, delaunay_of_vertices
 from orbiframe.delaunay.sites import vertex_points
-from orbiframe.delaunay.triangle_arrays import cells_of, flip
+from orbiframe.delaunay.triangle_arrays import arrays_of, flip
 from orbiframe.delaunay.voronoi import circumcentres, circumradii
 from orbiframe.errors import GeometryError, MapError
 from orbiframe.orbifolds.atlas import Points
@@ -45,7 +45,7 @@ def test_the_triangles_are_those_of_many_lifts(word, count, seed):
     # Few sites on flat surfaces lie on rectangles and trapezoids, where the choice is free.
     group = group_of(word)
     sites = random_sites(group, count if group.geometry.curvature < 0 else 12 + count, seed)
-    found = delaunay(cell_triangulation(group), sites)
+    found = delaunay(polygon_triangulation(group), sites)
     require_sound(found.triangulation)
     expected = delaunay_areas(group, sites)
     assert len(expected) == found.triangulation.face_count
@@ -56,7 +56,7 @@ def test_the_triangles_are_those_of_many_lifts(word, count, seed):
 def test_a_thousand_sites_are_where_they_were_put(word):
     group = group_of(word)
     sites = random_sites(group, 1000, 5)
-    found = delaunay(cell_triangulation(group), sites)
+    found = delaunay(polygon_triangulation(group), sites)
     require_sound(found.triangulation)
     assert sorted(found.vertex) == list(range(1000))
     assert same_places(group, vertex_points(found.triangulation).x[found.vertex], sites.x) < 1e-9
@@ -68,7 +68,7 @@ def test_a_thousand_sites_are_where_they_were_put(word):
 )
 def test_one_vertex_is_enough(word, counts):
     group = group_of(word)
-    t = delaunay(cell_triangulation(group), random_sites(group, 1, 3)).triangulation
+    t = delaunay(polygon_triangulation(group), random_sites(group, 1, 3)).triangulation
     assert (t.vertex_count, t.edge_count, t.face_count) == counts
     require_sound(t)
 
@@ -79,7 +79,7 @@ def test_sites_that_the_group_moves_give_the_same_triangles(word):
     sites = random_sites(group, 40, 2)
     pairings = group.polygon.pairings[rng.integers(len(group.word), size=40)]
     moved = Points(sites.patch, group.geometry.act(pairings, sites.x))
-    start = cell_triangulation(group)
+    start = polygon_triangulation(group)
     one, other = delaunay(start, sites), delaunay(start, moved)
     np.testing.assert_allclose(np.sort(one.triangulation.areas), np.sort(other.triangulation.areas), atol=1e-8)
 
@@ -88,7 +88,7 @@ def test_ties_are_broken_once_for_every_orbit():
     """The middle and the corner of the Bolza octagon: eight lifts of the corner lie on every circle."""
     group = group_of("abcdABCD")
     x = np.stack([group.geometry.origin, group.polygon.vertices[0]])
-    t = delaunay(cell_triangulation(group), Points(np.zeros(2, dtype=np.intp), x)).triangulation
+    t = delaunay(polygon_triangulation(group), Points(np.zeros(2, dtype=np.intp), x)).triangulation
     require_sound(t)
     assert (t.vertex_count, t.face_count) == (2, 8)
     np.testing.assert_allclose(circumradii(t), circumradii(t)[0], rtol=1e-9)
@@ -99,7 +99,7 @@ def test_a_square_grid_on_the_torus(side):
     group = group_of("abAB")
     i, j = np.divmod(np.arange(side**2), side)
     x = np.stack([np.ones(side**2), i / side - 0.4, j / side - 0.4], axis=1)
-    t = delaunay(cell_triangulation(group), Points(np.zeros(side**2, dtype=np.intp), x)).triangulation
+    t = delaunay(polygon_triangulation(group), Points(np.zeros(side**2, dtype=np.intp), x)).triangulation
     require_sound(t)
     np.testing.assert_allclose(t.areas, 0.5 / side**2, rtol=1e-9)
 
@@ -108,7 +108,7 @@ def test_a_square_grid_on_the_torus(side):
 def test_no_lift_of_a_site_lies_within_a_circle(word):
     group = group_of(word)
     sites = random_sites(group, 80, 9)
-    t = delaunay(cell_triangulation(group), sites).triangulation
+    t = delaunay(polygon_triangulation(group), sites).triangulation
     placed = group.geometry.act(t.placement, circumcentres(t))
     centre = group.reduce(placed)[0]
     reach = np.pi if group.geometry.curvature > 0 else group.polygon.circumradius + circumradii(t).max()
@@ -120,8 +120,8 @@ def test_no_lift_of_a_site_lies_within_a_circle(word):
 def test_an_edge_that_is_flipped_is_noticed():
     group = group_of("abABcdCD")
     sites = random_sites(group, 30, 4)
-    t = delaunay(cell_triangulation(group), sites).triangulation
-    cells = cells_of(t)
+    t = delaunay(polygon_triangulation(group), sites).triangulation
+    cells = arrays_of(t)
     e = next(e for e in range(len(t.twin)) if cells.twin[e] // 3 != e // 3)
     flip(cells, e)
     turned = replace(t, corners=cells.corners, twin=cells.twin, same=cells.same, gluing=cells.gluing)
@@ -135,7 +135,7 @@ def test_an_edge_that_is_flipped_is_noticed():
 def test_any_start_leads_to_the_same_triangles(word):
     group = group_of(word)
     sites = random_sites(group, 50, 6)
-    start = cell_triangulation(group)
+    start = polygon_triangulation(group)
     other = delaunay(start, random_sites(group, 200, 7)).triangulation
     one, two = (delaunay(t, sites).triangulation for t in (start, other))
     np.testing.assert_allclose(np.sort(one.areas), np.sort(two.areas), atol=1e-8)
@@ -144,7 +144,7 @@ def test_any_start_leads_to_the_same_triangles(word):
 def test_some_vertices_are_kept():
     group = group_of("abcdABCD")
     sites = random_sites(group, 300, 8)
-    dense = delaunay(cell_triangulation(group), sites)
+    dense = delaunay(polygon_triangulation(group), sites)
     few = delaunay_of_vertices(dense.triangulation, dense.vertex[:20])
     require_sound(few.triangulation)
     chosen = Points(sites.patch[:20], sites.x[:20])
@@ -155,9 +155,9 @@ def test_some_vertices_are_kept():
 @pytest.mark.parametrize("word", WORDS)
 def test_located_points_lie_in_their_triangles(word):
     group = group_of(word)
-    t = delaunay(cell_triangulation(group), random_sites(group, 60, 1)).triangulation
+    t = delaunay(polygon_triangulation(group), random_sites(group, 60, 1)).triangulation
     points = random_sites(group, 500, 2)
-    face, x = locate(t, points)
+    face, x = find(t, points)
     share = np.linalg.solve(np.swapaxes(t.corners[face], 1, 2), x[..., None])[..., 0]
     assert share.min() > -1e-9
     assert same_places(group, group.geometry.act(t.placement[face], x), points.x) < 1e-8
@@ -166,20 +166,20 @@ def test_located_points_lie_in_their_triangles(word):
 @pytest.mark.parametrize("genus", [2, 5, 10])
 def test_the_fan_of_a_large_polygon_keeps_its_digits(genus):
     letters = "abcdefghijklmnopqrst"[: 2 * genus]
-    t = cell_triangulation(group_of(letters + letters.upper()))
+    t = polygon_triangulation(group_of(letters + letters.upper()))
     assert (t.vertex_count, t.face_count) == (2, 4 * genus)
     assert t.area_defect < 1e-12
     assert t.gluing_defect < 1e-9
 
 
 def test_what_cannot_be_is_said():
-    start = cell_triangulation(group_of("abcdABCD"))
+    start = polygon_triangulation(group_of("abcdABCD"))
     one = random_sites(group_of("abcdABCD"), 1, 0)
     with pytest.raises(MapError, match="no sites"):
         delaunay(start, Points(one.patch[:0], one.x[:0]))
     with pytest.raises(MapError, match="sites 0 and 1 are at one place"):
         delaunay(start, Points(np.zeros(2, dtype=np.intp), np.repeat(one.x, 2, axis=0)))
     with pytest.raises(MapError, match="no half of the sphere"):
-        delaunay(cell_triangulation(group_of("aA")), random_sites(group_of("aA"), 3, 0))
+        delaunay(polygon_triangulation(group_of("aA")), random_sites(group_of("aA"), 3, 0))
     with pytest.raises(GeometryError, match="not found in any triangle"):
         delaunay(start, Points(one.patch, np.full((1, 3), np.inf)))

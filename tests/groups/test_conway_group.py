@@ -10,10 +10,10 @@ from hypothesis import assume, given, settings, strategies as st
 from reference_geometries import GEOMETRIES
 
 from orbiframe import GeometryError, TopologyError
-from orbiframe.delaunay import cell_triangulation
-from orbiframe.groups import SymmetryGroup, SymmetryPolygon, orbifold_cell, orbifold_group, orbifold_of, stabilizer
+from orbiframe.delaunay import polygon_triangulation
+from orbiframe.groups import ConwayGroup, MirroredPolygon, orbifold_group, orbifold_of, orbifold_polygon, stabilizer
 from orbiframe.testing import Lab, contract_tests, group_laws
-from orbiframe.words import MirrorWord, Signature
+from orbiframe.words import ConwaySymbol, MirrorWord
 from orbiframe.words.conway_symbol import PLANE_GROUPS
 
 S2, E2, H2 = GEOMETRIES
@@ -41,7 +41,7 @@ POINT_GROUP = dict(zip(PLANE_GROUPS, (1, 2, 2, 2, 2, 4, 4, 4, 4, 4, 8, 8, 3, 6, 
 
 
 def group_of(text):
-    signature = Signature.parse(text)
+    signature = ConwaySymbol.parse(text)
     return orbifold_group(GEOMETRY[signature.curvature], signature)
 
 
@@ -64,7 +64,7 @@ def test_relations_hold(text):
 def test_the_cell_meets_poincares_conditions_and_folds_to_the_orbifold(text):
     polygon = group_of(text).polygon
     polygon.require_conditions(1e-12)
-    assert polygon.signature.canonical == Signature.parse(text).canonical
+    assert polygon.signature.canonical == ConwaySymbol.parse(text).canonical
     assert polygon.relation_defect < 1e-9
 
 
@@ -152,7 +152,7 @@ def test_the_number_of_tiles_in_a_disc_is_the_ratio_of_areas(text, order):
 @pytest.mark.parametrize("text", ["*237", "*632", "*2345", "*2222", "*333"])
 def test_a_group_of_reflections_has_the_polygon_of_its_angles(text):
     polygon = group_of(text).polygon
-    orders = Signature.parse(text).mirrors[0]
+    orders = ConwaySymbol.parse(text).mirrors[0]
     np.testing.assert_allclose(polygon.interior_angles.astype(float), np.pi / np.array(orders), rtol=1e-11)
 
 
@@ -203,7 +203,7 @@ def symbols(draw):
     orders = st.lists(st.integers(2, 7), max_size=3).map(tuple)
     parts = draw(st.integers(0, 1)), draw(orders), tuple(draw(st.lists(orders, max_size=2))), draw(st.integers(0, 2))
     try:
-        return Signature(*parts)
+        return ConwaySymbol(*parts)
     except TopologyError:
         assume(False)
 
@@ -213,10 +213,10 @@ def symbols(draw):
 def test_every_orbifold_has_a_convex_cell(signature):
     assume(signature.curvature <= 0)
     geometry = GEOMETRY[signature.curvature]
-    polygon = orbifold_cell(geometry, signature)
+    polygon = orbifold_polygon(geometry, signature)
     polygon.require_conditions(1e-10)
     assert polygon.signature.canonical == signature.canonical
-    group = SymmetryGroup(polygon)
+    group = ConwayGroup(polygon)
     x = geometry.from_polar(np.linspace(0.1, 1, 9), np.arange(9.0))
     moved = geometry.act(polygon.pairings[:, None], x)
     expected = np.broadcast_to(group.reduce(x)[0], moved.shape)
@@ -239,7 +239,7 @@ def test_a_moved_vertex_is_noticed_with_its_place_and_value():
     vertices = polygon.vertices.copy()
     vertices[0] = H2.geodesic(vertices[0], H2.origin, 0.1)
     with pytest.raises(GeometryError, match=r"corners \d of 'abc' add up to .* a corner of mirrors needs pi / n"):
-        SymmetryGroup(SymmetryPolygon(H2, vertices, polygon.word))
+        ConwayGroup(MirroredPolygon(H2, vertices, polygon.word))
 
 
 def test_sides_of_different_lengths_are_noticed():
@@ -247,7 +247,7 @@ def test_sides_of_different_lengths_are_noticed():
     vertices = polygon.vertices.copy()
     vertices[0] = H2.geodesic(vertices[0], H2.origin, 0.01)
     with pytest.raises(GeometryError, match="must be equal"):
-        SymmetryGroup(SymmetryPolygon(H2, vertices, polygon.word))
+        ConwayGroup(MirroredPolygon(H2, vertices, polygon.word))
 
 
 def test_a_cone_angle_that_is_no_part_of_the_circle_is_noticed():
@@ -255,13 +255,13 @@ def test_a_cone_angle_that_is_no_part_of_the_circle_is_noticed():
     radius = np.arccosh(1 / (np.tan(np.pi / 8) * np.tan(np.radians(25))))
     vertices = H2.from_polar(radius, np.pi * np.arange(8) / 4)
     with pytest.raises(GeometryError, match=r"which is 2 pi / 0\.9; a cone point needs 2 pi / n"):
-        SymmetryGroup(SymmetryPolygon(H2, vertices, MirrorWord.parse("abABcdCD")))
+        ConwayGroup(MirroredPolygon(H2, vertices, MirrorWord.parse("abABcdCD")))
 
 
 def test_an_octagon_with_half_the_angle_has_a_cone_point_of_order_2():
     radius = np.arccosh(1 / (np.tan(np.pi / 8) * np.tan(np.pi / 16)))
     vertices = H2.from_polar(radius, np.pi * np.arange(8) / 4)
-    group = SymmetryGroup(SymmetryPolygon(H2, vertices, MirrorWord.parse("abABcdCD")))
+    group = ConwayGroup(MirroredPolygon(H2, vertices, MirrorWord.parse("abABcdCD")))
     assert str(group.signature) == "oo2"
     assert group.area == pytest.approx(5 * np.pi, rel=1e-12)
 
@@ -269,13 +269,13 @@ def test_an_octagon_with_half_the_angle_has_a_cone_point_of_order_2():
 @pytest.mark.parametrize(("text", "geometry"), [("*235", H2), ("*237", E2), ("o", S2), ("*237", S2), ("x", E2)])
 def test_a_wrong_geometry_is_refused(text, geometry):
     with pytest.raises(GeometryError, match="Euler characteristic"):
-        orbifold_group(geometry, Signature.parse(text))
+        orbifold_group(geometry, ConwaySymbol.parse(text))
 
 
 def test_a_spherical_cell_is_not_taken_for_the_whole_sphere():
     with pytest.raises(GeometryError, match="no fundamental polygon"):
-        cell_triangulation(group_of("532"))
-    assert cell_triangulation(group_of("x")).area_defect < 1e-12
+        polygon_triangulation(group_of("532"))
+    assert polygon_triangulation(group_of("x")).area_defect < 1e-12
 
 
 # ---- the laws of the kit --------------------------------------------------------------------------------------------
@@ -285,7 +285,7 @@ def closed_surface(geometry, word):
     """The group of the surface of a word, by its symbol."""
     deficit = 2 - word.euler_characteristic
     return orbifold_group(
-        geometry, Signature(handles=deficit // 2) if word.orientable else Signature(crosscaps=deficit)
+        geometry, ConwaySymbol(handles=deficit // 2) if word.orientable else ConwaySymbol(crosscaps=deficit)
     )
 
 

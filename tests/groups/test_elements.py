@@ -12,9 +12,9 @@ from reference_geometries import GEOMETRIES
 from reference_surfaces import brute_force_group
 
 from orbiframe import FundamentalPolygon, GeometryError, Word
-from orbiframe.groups import PolygonGroup, dirichlet_cell, elements_within, regular_polygon
+from orbiframe.groups import PolygonGroup, dirichlet_domain_of, elements_within, regular_polygon
 from orbiframe.groups.conway_group import orbifold_group
-from orbiframe.words.conway_symbol import Signature
+from orbiframe.words.conway_symbol import ConwaySymbol
 
 S2, E2, H2 = GEOMETRIES
 
@@ -49,7 +49,7 @@ def test_elements_are_all_words_within_the_radius(text: str) -> None:
     words = brute_force_group(group.atlas().isometry[1:], 4)
     inside = words[H2.distance(H2.origin, words[..., 0]) <= radius]
     found = elements_within(group, radius)
-    apart = np.abs(found.spin().matrix[:, None] - inside).max(axis=(2, 3))
+    apart = np.abs(found.precise().matrix[:, None] - inside).max(axis=(2, 3))
     assert len(found) == len(inside)
     assert (apart.min(axis=1) < 1e-8).all()
     assert (apart.min(axis=0) < 1e-8).all()
@@ -70,7 +70,7 @@ def test_elements_of_a_lattice_are_its_points_in_the_disc(shear: float, height: 
 
 def test_a_slender_parallelogram_has_a_round_dirichlet_cell() -> None:
     """The cell of the lattice of (1, 0) and (n + 1/2, 1) is that of (1, 0) and (1/2, 1): circumradius 5/8."""
-    cell = dirichlet_cell(lattice_group(E2, Word.parse("abAB"), second=(30.5, 1.0)))
+    cell = dirichlet_domain_of(lattice_group(E2, Word.parse("abAB"), second=(30.5, 1.0)))
     assert cell.side_count == 6
     assert cell.circumradius == pytest.approx(5 / 8, abs=1e-12)
 
@@ -80,7 +80,7 @@ def test_each_element_comes_once_and_none_is_missing(make) -> None:
     """Polygons that are no Dirichlet cells, or whose sides make up no lines, against brute force."""
     group, radius = make(), 6.0
     found = elements_within(group, radius)
-    place = found.spin().place
+    place = found.precise().place
     apart = H2.distance(place[:, None], place) + 10 * np.eye(len(place))
     assert apart.min() > 1.0
     walked = brute_force_group(group.atlas().isometry[1:], 1)
@@ -97,7 +97,7 @@ def test_each_element_comes_once_and_none_is_missing(make) -> None:
 
 def test_the_dirichlet_cell_of_a_regular_polygon_is_the_polygon() -> None:
     group = regular("aabbcc")
-    cell = dirichlet_cell(group)
+    cell = dirichlet_domain_of(group)
     apart = H2.distance(cell.vertices[:, None], group.polygon.vertices).min(axis=1)
     assert cell.side_count == 6
     assert apart.max() < 1e-12
@@ -108,7 +108,7 @@ def test_words_are_read_off(make) -> None:
     group = make()
     found = elements_within(group, 7.0)
     for number in range(1, len(found), 37):
-        matrix = found.spin(np.array([number])).matrix[0]
+        matrix = found.precise(np.array([number])).matrix[0]
         assert np.abs(group.element(found.word(number)) - matrix).max() < 1e-10 * np.abs(matrix).max()
     assert found.word(0) == ()
 
@@ -116,32 +116,32 @@ def test_words_are_read_off(make) -> None:
 def test_the_number_of_elements_grows_like_the_area_of_the_disc() -> None:
     found = elements_within(regular("abABcdCD"), 15.0)
     assert len(found) == pytest.approx((np.cosh(15.0) - 1) / 2, rel=2e-3)
-    place = found.spin(slice(None, None, 400)).place
+    place = found.precise(slice(None, None, 400)).place
     np.testing.assert_allclose(H2.distance(H2.origin, place), found.distance[::400], atol=1e-9)
 
 
 def test_the_antipodal_group_has_two_elements() -> None:
     found = elements_within(FiniteGroup(S2, Word.parse("aa")), np.pi)
-    np.testing.assert_allclose(found.spin().matrix, [np.eye(3), -np.eye(3)], atol=1e-15)
+    np.testing.assert_allclose(found.precise().matrix, [np.eye(3), -np.eye(3)], atol=1e-15)
     assert [found.word(k) for k in range(2)] == [(), (1,)]
     assert len(elements_within(FiniteGroup(S2, Word.parse("aa")), 3.0)) == 1
 
 
 @pytest.mark.parametrize(("symbol", "order"), [("*235", 120), ("235", 60), ("332", 12), ("3x", 6), ("*33", 6)])
 def test_spherical_groups_have_as_many_elements_as_known(symbol: str, order: int) -> None:
-    group = orbifold_group(S2, Signature.parse(symbol))
+    group = orbifold_group(S2, ConwaySymbol.parse(symbol))
     found = elements_within(group, np.pi)
     assert len(found) == order
     for number in range(order):
-        np.testing.assert_allclose(group.element(found.word(number)), found.spin().matrix[number], atol=1e-13)
+        np.testing.assert_allclose(group.element(found.word(number)), found.precise().matrix[number], atol=1e-13)
 
 
 @pytest.mark.parametrize("symbol", ["*237", "2223", "2*33"])
 def test_groups_with_fixed_points_fill_the_disc(symbol: str) -> None:
-    group = orbifold_group(H2, Signature.parse(symbol))
+    group = orbifold_group(H2, ConwaySymbol.parse(symbol))
     found = elements_within(group, 7.0)
     assert len(found) == pytest.approx(2 * np.pi * (np.cosh(7.0) - 1) / group.area, rel=0.02)
-    place = found.spin().place
+    place = found.precise().place
     assert H2.distance(place[1:], place[0]).min() > 0.1
     assert len(np.unique(np.round(place, 5), axis=0)) == len(found)
 
@@ -150,7 +150,7 @@ def test_elements_far_away_keep_their_digits() -> None:
     """|a|^2 - |b|^2 = 1 to eps e^d, what is left of a difference of two numbers of the size e^d."""
     group = regular("abABcdCD")
     found = elements_within(group, 13.0)
-    last = found.spin(np.arange(len(found) - 50, len(found)))
+    last = found.precise(np.arange(len(found) - 50, len(found)))
     assert np.abs(np.abs(last.a) ** 2 - np.abs(last.b) ** 2 - 1).max() < 1e-13 * np.exp(13.0)
 
 
@@ -200,7 +200,7 @@ def test_random_words_of_up_to_20_letters(pairs: int, seed: int) -> None:
     assert growth_series(group, 3) == series([1, *[2] * (pairs - 1), 1], [1, *[2 - letters] * (pairs - 1), 1], 3)
     found = elements_within(group, 2.2 * group.polygon.inradius)
     for number in range(len(found)):
-        matrix = found.spin(np.array([number])).matrix[0]
+        matrix = found.precise(np.array([number])).matrix[0]
         assert np.abs(group.element(found.word(number)) - matrix).max() < 1e-11 * np.abs(matrix).max()
 
 

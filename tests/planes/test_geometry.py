@@ -139,18 +139,6 @@ def test_translation_carries_the_frame(geometry):
     )
 
 
-@each_geometry
-@pytest.mark.parametrize("parity", [1, -1])
-def test_isometry_between_two_segments(geometry, parity):
-    rng = np.random.default_rng(9)
-    x, y, to_x = (random_points(geometry, rng, 6) for _ in range(3))
-    to_y = geometry.exp(to_x, geometry.distance(x, y)[:, None] * geometry.frame(to_x)[..., 1])
-    g = geometry.isometry_between(x, y, to_x, to_y, parity)
-    np.testing.assert_allclose(geometry.act(g, x), to_x, atol=1e-12)
-    np.testing.assert_allclose(geometry.act(g, y), to_y, atol=1e-12)
-    assert (geometry.parity(g) == parity).all()
-
-
 @settings(max_examples=25, deadline=None)
 @given(st.data(), st.sampled_from(GEOMETRIES))
 def test_isometries_preserve_versine_area_and_orientation(data, geometry):

@@ -1,4 +1,4 @@
-"""Spin matrices against the 3 x 3 matrices of the geometries, and far from the origin against mpmath."""
+"""PreciseIsometry matrices against the 3 x 3 matrices of the geometries, and far from the origin against mpmath."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from reference_meshes import geometry
 
-from orbiframe.planes import Spin
+from orbiframe.planes import PreciseIsometry
 
 seeds = st.integers(0, 2**32 - 1)
 
@@ -27,7 +27,7 @@ def random_isometries(curvature: int, count: int, rng: np.random.Generator) -> n
 def test_products_and_inverses_are_those_of_matrices(curvature, seed):
     rng = np.random.default_rng(seed)
     g, h = random_isometries(curvature, 5, rng), random_isometries(curvature, 5, rng)
-    s, t = Spin.of_matrix(curvature, g), Spin.of_matrix(curvature, h)
+    s, t = PreciseIsometry.of_matrix(curvature, g), PreciseIsometry.of_matrix(curvature, h)
     np.testing.assert_allclose(s.matrix, g, atol=1e-13)
     np.testing.assert_allclose((s @ t).matrix, g @ h, atol=1e-12)
     np.testing.assert_allclose(s.inverse.matrix, np.linalg.inv(g), atol=1e-12)
@@ -39,8 +39,10 @@ def test_products_and_inverses_are_those_of_matrices(curvature, seed):
 def test_directions_are_those_of_the_image_of_the_origin(curvature):
     angle = np.linspace(-3, 3, 7)
     move = geometry(curvature).translation(1.2, angle)
-    np.testing.assert_allclose(Spin.of_matrix(curvature, move).direction.astype(float), angle, atol=1e-14)
-    np.testing.assert_allclose(Spin.rotation(curvature, angle).matrix, geometry(curvature).rotation(angle), atol=1e-15)
+    np.testing.assert_allclose(PreciseIsometry.of_matrix(curvature, move).direction.astype(float), angle, atol=1e-14)
+    np.testing.assert_allclose(
+        PreciseIsometry.rotation(curvature, angle).matrix, geometry(curvature).rotation(angle), atol=1e-15
+    )
 
 
 @given(st.floats(1, 16), st.floats(0, 6))
@@ -50,7 +52,7 @@ def test_long_ways_there_and_back_keep_the_error_of_spin_matrices(distance, angl
     eps = float(np.finfo(np.longdouble).eps)
     there = [np.sinh(distance) * np.cos(angle), np.sinh(distance) * np.sin(angle)]
     x = np.array([[np.cosh(distance), *there], [np.cosh(distance), there[0], there[1] * (1 + 1e-9) + 1e-9]])
-    moves = Spin.translation(-1, x)
+    moves = PreciseIsometry.translation(-1, x)
     step = moves[np.array([0])].inverse @ moves[np.array([1])]
     exact = _step(x)
     found = complex(2 * step.a[0] * step.b[0])

@@ -27,8 +27,10 @@ def on(family: str, name: str) -> ElementBasis:
 
 def sites(basis: ElementBasis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """A point in every fourth micro triangle: its triangle, its number and the point in the frame of the triangle."""
-    face, cell = np.divmod(np.arange(0, basis.cells.shape[0] * basis.cells.shape[1], 4), basis.cells.shape[1])
-    return face, cell, basis.domain.geometry.project(np.array([0.5, 0.2, 0.3]) @ basis.cells[face, cell])
+    face, cell = np.divmod(
+        np.arange(0, basis.micro_triangles.shape[0] * basis.micro_triangles.shape[1], 4), basis.micro_triangles.shape[1]
+    )
+    return face, cell, basis.domain.geometry.project(np.array([0.5, 0.2, 0.3]) @ basis.micro_triangles[face, cell])
 
 
 def seen(basis: ElementBasis, face: np.ndarray, x: np.ndarray) -> Points:
@@ -40,7 +42,7 @@ def piece(
     basis: ElementBasis, coefficients: np.ndarray, face: np.ndarray, cell: np.ndarray, x: np.ndarray
 ) -> np.ndarray:
     """The polynomial of a micro triangle at points of X that need not lie in it, (k, n)."""
-    inverse = np.linalg.inv(np.swapaxes(basis.cells[face, cell], 1, 2))
+    inverse = np.linalg.inv(np.swapaxes(basis.micro_triangles[face, cell], 1, 2))
     values = bernstein_values(basis.degree, np.einsum("nij,knj->kni", inverse, x))
     found = np.einsum("kna,na->kn", values, basis.net(coefficients[:, None])[face, cell, :, 0])
     if basis.weights is None or coefficients is basis.weights:
@@ -107,7 +109,7 @@ def test_constants_belong_to_even_degrees_and_to_quotients(degree: int, name: st
     ones = nearest_to_one(basis)[:, None]
     np.testing.assert_allclose(basis.values(points, ones), 1, atol=1e-9)
     if degree % 2:
-        plain = ElementBasis(domain, degree, basis.cells, basis.matrix, 0, rational=False)
+        plain = ElementBasis(domain, degree, basis.micro_triangles, basis.matrix, 0, rational=False)
         assert plain.weights is None
         assert np.abs(plain.values(points, ones) - 1).max() > 1e-4
 
@@ -132,7 +134,7 @@ def test_many_points_in_any_order(family: type[ElementBasis], name: str) -> None
     """More points than are taken at a time, on whole triangles and on splits in three and in six."""
     domain = checks.domain(name)
     basis = family(domain.orbifold, domain)
-    points = checks.quadrature(basis, int(np.sqrt(2500 / np.prod(basis.cells.shape[:2]))) + 1)[0]
+    points = checks.quadrature(basis, int(np.sqrt(2500 / np.prod(basis.micro_triangles.shape[:2]))) + 1)[0]
     chosen = np.random.default_rng(1).permutation(len(points.x))[:2500]
     points = Points(points.patch[chosen], points.x[chosen])
     coefficients = np.random.default_rng(0).normal(size=(basis.size, 2))

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from orbiframe import TopologyError, Word
-from orbiframe.words import MirrorWord, Relations, Signature, word_of
+from orbiframe.words import ConwaySymbol, MirrorWord, Relations, word_of
 from orbiframe.words.conway_symbol import PLANE_GROUPS
 
 ORDERS = st.lists(st.integers(2, 12), max_size=4).map(tuple)
@@ -19,15 +19,15 @@ def signatures(draw):
     """Any orbifold that is not bad, not too large."""
     parts = draw(st.integers(0, 2)), draw(ORDERS), tuple(draw(st.lists(ORDERS, max_size=3))), draw(st.integers(0, 2))
     try:
-        return Signature(*parts)
+        return ConwaySymbol(*parts)
     except TopologyError:
-        return Signature(parts[0] + 1, *parts[1:])
+        return ConwaySymbol(parts[0] + 1, *parts[1:])
 
 
 @settings(max_examples=60, deadline=None)
 @given(signatures())
 def test_a_symbol_is_read_as_it_is_written(signature):
-    assert Signature.parse(str(signature)) == signature
+    assert ConwaySymbol.parse(str(signature)) == signature
     assert signature.canonical.canonical == signature.canonical
     assert signature.canonical.euler_characteristic == signature.euler_characteristic
 
@@ -78,15 +78,15 @@ def test_euler_characteristic_counts_cells_by_the_order_of_their_stabilizers(sig
     ],
 )
 def test_euler_characteristic_and_order(text, chi, order):
-    signature = Signature.parse(text)
+    signature = ConwaySymbol.parse(text)
     assert signature.euler_characteristic == chi
     assert signature.order == order
 
 
 @pytest.mark.parametrize("text", PLANE_GROUPS)
 def test_the_plane_groups_are_those_with_characteristic_zero(text):
-    assert Signature.parse(text).euler_characteristic == 0
-    assert str(Signature.parse(text).canonical) == text
+    assert ConwaySymbol.parse(text).euler_characteristic == 0
+    assert str(ConwaySymbol.parse(text).canonical) == text
 
 
 def test_there_are_seventeen_plane_groups():
@@ -97,7 +97,7 @@ def test_there_are_seventeen_plane_groups():
     for handles, cones, mirrors, crosscaps in product((0, 1), orders, boundaries, (0, 1, 2)):
         if 2 * handles + len(cones) / 2 + len(mirrors) + crosscaps <= 2:
             with suppress(TopologyError):
-                signature = Signature(handles, cones, mirrors, crosscaps)
+                signature = ConwaySymbol(handles, cones, mirrors, crosscaps)
                 found |= {str(signature.canonical)} if signature.euler_characteristic == 0 else set()
     assert found == set(PLANE_GROUPS)
 
@@ -111,22 +111,22 @@ def test_there_are_seventeen_plane_groups():
     ],
 )
 def test_names(text, name):
-    assert Signature.parse(text).name == name
+    assert ConwaySymbol.parse(text).name == name
 
 
 def test_corners_may_be_read_from_any_of_them_and_backwards_together():
-    same = Signature.parse("*234*567").canonical
-    assert Signature.parse("*342*756").canonical == same
-    assert Signature.parse("*432*765").canonical == same
-    assert Signature.parse("*432*567").canonical != same
-    assert Signature.parse("*432*567x").canonical == Signature.parse("*234*567x").canonical
-    assert Signature.parse("ox").canonical == Signature.parse("xxx")
+    same = ConwaySymbol.parse("*234*567").canonical
+    assert ConwaySymbol.parse("*342*756").canonical == same
+    assert ConwaySymbol.parse("*432*765").canonical == same
+    assert ConwaySymbol.parse("*432*567").canonical != same
+    assert ConwaySymbol.parse("*432*567x").canonical == ConwaySymbol.parse("*234*567x").canonical
+    assert ConwaySymbol.parse("ox").canonical == ConwaySymbol.parse("xxx")
 
 
 @pytest.mark.parametrize("text", ["5", "23", "*5", "*23", "2 12"])
 def test_bad_orbifolds_are_refused_in_words(text):
     with pytest.raises(TopologyError, match="bad orbifold"):
-        Signature.parse(text)
+        ConwaySymbol.parse(text)
 
 
 @pytest.mark.parametrize(
@@ -135,7 +135,7 @@ def test_bad_orbifolds_are_refused_in_words(text):
 )
 def test_other_texts_are_refused_in_words(text, problem):
     with pytest.raises(TopologyError, match=problem):
-        Signature.parse(text)
+        ConwaySymbol.parse(text)
 
 
 @pytest.mark.parametrize(
@@ -149,7 +149,7 @@ def test_other_texts_are_refused_in_words(text, problem):
     ],
 )
 def test_presentations(text, relations):
-    assert str(Relations.of(*word_of(Signature.parse(text)))) == relations
+    assert str(Relations.of(*word_of(ConwaySymbol.parse(text)))) == relations
 
 
 def test_a_word_without_mirrors_is_as_before():

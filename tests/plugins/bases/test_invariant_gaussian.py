@@ -8,19 +8,19 @@ from orbiframe_bases.invariant_gaussian import InvariantGaussian
 from reference_geometries import GEOMETRIES
 
 from orbiframe import GeometryError, Points, UsageError
-from orbiframe.groups import orbifold_group, sites_of_cell
-from orbiframe.words import Signature
+from orbiframe.groups import orbifold_group, spread_over
+from orbiframe.words import ConwaySymbol
 
 SYMBOLS = ["532", "*532", "3*2", "4x", "*", "4*2", "22x", "*632", "2222", "*x", "*237", "237", "2*23", "*2*"]
 
 
 def group_of(text):
-    signature = Signature.parse(text)
+    signature = ConwaySymbol.parse(text)
     return orbifold_group({g.curvature: g for g in GEOMETRIES}[signature.curvature], signature)
 
 
 def cell_points(group, count, seed=3):
-    return sites_of_cell(group, count, seed).points
+    return spread_over(group, count, seed).points
 
 
 def jets(basis, x, order=1):
@@ -45,7 +45,7 @@ def test_the_derivative_across_a_mirror_is_zero(text):
     for side in polygon.word.mirrors:
         flag = polygon.side_flags[side]
         frame = group.geometry.frame(flag[:, 0])
-        across = [float(group.geometry.inner(frame[:, k], flag[:, 2])) for k in (0, 1)]
+        across = [float(group.geometry.inner(flag[:, 0], frame[:, k], flag[:, 2])) for k in (0, 1)]
         _, d1, d2 = jets(basis, flag[None, :, 0])[:, 0]
         np.testing.assert_allclose(across[0] * d1 + across[1] * d2, 0, atol=1e-11)
         assert np.hypot(d1, d2).max() > 1e-3, "the derivative along the mirror is not zero"
@@ -82,7 +82,7 @@ def test_first_derivatives_are_those_along_geodesics(text):
 
 def test_sites_keep_apart_from_the_images_of_one_another():
     group = group_of("*237")
-    sites = sites_of_cell(group, 20)
+    sites = spread_over(group, 20)
     tiles = group.tiles(1.0)
     images = group.geometry.act(tiles[:, None], sites.points).reshape(-1, 3)
     gaps = group.geometry.distance(sites.points[:, None], images)
@@ -96,4 +96,4 @@ def test_options_out_of_range_are_refused():
     with pytest.raises(UsageError, match="width"):
         InvariantGaussian(group_of("*237"), width=0)
     with pytest.raises(GeometryError, match="at least one"):
-        sites_of_cell(group_of("*237"), 0)
+        spread_over(group_of("*237"), 0)

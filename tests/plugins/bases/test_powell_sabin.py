@@ -94,7 +94,7 @@ def test_polynomials_are_reproduced_from_their_own_jets(family: type[PowellSabin
     own = local_unknowns(basis, face, lambda *arguments: blossom(polynomial, list(arguments))[0])
     rows = 6 * coefficient_count(d)
     nets = basis.matrix[face * rows : (face + 1) * rows][:, unknowns.numbers[face]] @ own
-    wanted = symmetric_power(np.swapaxes(basis.cells[face], 1, 2), d) @ polynomial
+    wanted = symmetric_power(np.swapaxes(basis.micro_triangles[face], 1, 2), d) @ polynomial
     np.testing.assert_allclose(nets.reshape(6, -1), wanted[..., 0], atol=1e-10 * np.abs(wanted).max())
 
 
@@ -128,7 +128,7 @@ def test_spherical_polynomials_are_splines(family: type[PowellSabin], name: str)
 
 def restrictions(basis: PowellSabin) -> np.ndarray:
     """The Bernstein coefficients of all monomials of the degree on all micro triangles, (F m n, n)."""
-    columns = basis.domain.placement[:, None] @ np.swapaxes(basis.cells, 2, 3)
+    columns = basis.domain.placement[:, None] @ np.swapaxes(basis.micro_triangles, 2, 3)
     return symmetric_power(columns, basis.degree).reshape(basis.matrix.shape[0], -1)
 
 

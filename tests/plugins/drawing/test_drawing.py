@@ -15,14 +15,14 @@ from orbiframe_drawing.group_picture import draw_group, group_picture
 from orbiframe_drawing.models import model_of
 from orbiframe_drawing.page import Page
 from orbiframe_drawing.picture import Curve, Label, Picture, Raster, Shape, beside, chained, circle, polygon
-from orbiframe_drawing.polygon import cell_of
+from orbiframe_drawing.polygon import polygon_of
 from orbiframe_drawing.svg import svg_text
 from orbiframe_drawing.tiles import nearest_tiles, tiles_within
 from reference_geometries import GEOMETRIES
 
 from orbiframe import FormatError, GeometryError, PluginError, Registry, UsageError, Word
 from orbiframe.groups import orbifold_group
-from orbiframe.words import Signature
+from orbiframe.words import ConwaySymbol
 
 S2, E2, H2 = GEOMETRIES
 GEOMETRY = {1: S2, 0: E2, -1: H2}
@@ -37,7 +37,7 @@ def group_of(text):
 
 
 def nearest(group, count):
-    return nearest_tiles(group, cell_of(group), count)
+    return nearest_tiles(group, polygon_of(group), count)
 
 
 def points(geometry, seed, count=6, reach=2.0):
@@ -97,7 +97,7 @@ def test_outside_of_a_model_nothing_is_seen():
 def test_the_sphere_hides_what_is_behind():
     """The drawn part of a hemisphere has the area of the disc cut by half an ellipse."""
     model = model_of(S2)
-    corners = cell_of(group_of("aa")).corners
+    corners = polygon_of(group_of("aa")).corners
     (path,) = model.paths(corners[None])
     outline = np.concatenate([curve.at(np.linspace(0, 1, 200)[:-1]) for curve in path])
     x, y = outline.T
@@ -108,6 +108,19 @@ def test_the_sphere_hides_what_is_behind():
     far = np.concatenate([curve.at(np.linspace(0, 1, 200)[:-1]) for curve in hidden[0]])
     rest = abs(np.sum(far[:, 0] * np.roll(far[:, 1], -1) - far[:, 1] * np.roll(far[:, 0], -1))) / 2
     assert area + rest == pytest.approx(np.pi, rel=1e-3)
+
+
+@pytest.mark.parametrize("tilt", [0.1, 0.4, 0.7, 1.0, 1.3])
+def test_of_a_turned_hemisphere_half_a_disc_and_half_an_ellipse_are_seen(tilt):
+    """Its border meets the outline in opposite points, between which no geodesic is the shortest."""
+    model, angles = model_of(S2), 2 * np.pi * np.arange(40) / 40
+    corners = S2.from_polar(np.pi / 2, angles) @ S2.translation(tilt, 0.3).T
+    pole = S2.translation(tilt, 0.3)[:, 0]
+    eye = np.array([np.sin(model.elevation), 0.0, -np.cos(model.elevation)])
+    (path,) = model.paths(corners[None])
+    x, y = np.concatenate([curve.at(np.linspace(0, 1, 100)[:-1]) for curve in path]).T
+    area = abs(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))) / 2
+    assert area == pytest.approx(np.pi / 2 * (1 + pole @ eye), rel=1e-3)
 
 
 # ---- tiles ----------------------------------------------------------------------------------------------------------
@@ -128,7 +141,7 @@ def test_word_lengths_are_the_growth_of_the_tiling(text, sides):
 
 
 def test_lengths_in_the_square_lattice_are_sums_of_steps():
-    tiles = tiles_within(group_of("abAB"), cell_of(group_of("abAB")), 3.2)
+    tiles = tiles_within(group_of("abAB"), polygon_of(group_of("abAB")), 3.2)
     steps = np.abs(np.round(tiles.elements[:, 1:, 0])).sum(axis=1)
     # Near the border of the disc the way may lead out of it, never where both neighbours are within.
     assert (tiles.length == steps).all()
@@ -210,9 +223,9 @@ def test_arrows_are_laid_upon_one_another_by_the_pairings():
     """The arrows of a side and of its mate run the same way after the pairing, for both signs of letters."""
     for text in ("abABcdCD", "aabbcc", "abaB"):
         group = group_of(text)
-        word, cell = group.word, cell_of(group)
+        word, polygon = group.word, polygon_of(group)
         for side, mate in enumerate(word.mate):
-            ends = [cell.sides[k, 0][:: int(np.sign(word.letters[k]))] for k in (side, mate)]
+            ends = [polygon.sides[k, 0][:: int(np.sign(word.letters[k]))] for k in (side, mate)]
             moved = group.geometry.act(group.polygon.pairings[side], ends[1])
             assert moved == pytest.approx(ends[0], abs=1e-8)
 
@@ -240,7 +253,7 @@ def test_a_motif_shows_which_elements_reverse_orientation():
 
 
 def test_mirrors_have_no_arrows():
-    signature = Signature.parse("*237")
+    signature = ConwaySymbol.parse("*237")
     picture = group_picture(orbifold_group(H2, signature), tiles=30)
     assert not [s for s in picture.shapes if s.fill in (line_colour(1), line_colour(2), line_colour(3))]
     assert [label.text for label in picture.labels] == ["a", "b", "c"]
@@ -290,16 +303,16 @@ ORDERS = {"*": 2, "x": 2, "22": 2, "*33": 6, "3x": 6, "2*": 4, "222": 4, "*222":
 
 @pytest.mark.parametrize("text", ORDERS)
 def test_cells_of_spherical_groups_have_the_area_of_the_sphere_over_the_order(text):
-    group = orbifold_group(S2, Signature.parse(text))
-    cell = cell_of(group)
-    fan = S2.triangle_area(S2.origin, cell.corners, np.roll(cell.corners, -1, axis=0))
+    group = orbifold_group(S2, ConwaySymbol.parse(text))
+    polygon = polygon_of(group)
+    fan = S2.triangle_area(S2.origin, polygon.corners, np.roll(polygon.corners, -1, axis=0))
     assert fan.sum() == pytest.approx(4 * np.pi / ORDERS[text], rel=1e-9)
-    tiles = nearest_tiles(group, cell, 200)
+    tiles = nearest_tiles(group, polygon, 200)
     assert len(tiles.elements) == ORDERS[text]
     assert (tiles.length >= 0).all()
     # Across a side lies the tile of its neighbour: the side is nearer to no other.
-    distance = S2.distance(cell.middles, S2.origin)
-    assert S2.distance(cell.middles, cell.neighbours[:, :, 0]) == pytest.approx(distance, abs=1e-7)
+    distance = S2.distance(polygon.middles, S2.origin)
+    assert S2.distance(polygon.middles, polygon.neighbours[:, :, 0]) == pytest.approx(distance, abs=1e-7)
     assert group_picture(group).shapes
 
 
@@ -367,6 +380,23 @@ def test_svg_is_xml_with_true_arcs_of_the_right_circle():
     # Counterclockwise in the plane is sweep flag 0 on a page whose second axis goes down.
     assert re.fullmatch(r"M0 2a1 1 0 0 0 2 0", data[0])
     assert data[1].count("a1 1 0 0 0") == 2
+
+
+@pytest.mark.parametrize("turn", [1.0, -1.0, 4.0, -4.0])
+def test_arcs_in_svg_run_through_the_middle_of_the_curve(turn):
+    """Read as the standard says: of the two circles through the ends the flags choose one, and one of its arcs."""
+    curve = Curve(np.array([(0.3, 0.1), (2.0, 1.0)]), turn)
+    root = ElementTree.fromstring(svg_text(Picture((Shape([[curve]], stroke="#000000"),), (-9.0, -9.0, 9.0, 9.0))))
+    data = root.find("{http://www.w3.org/2000/svg}path").get("d")
+    x, y, radius, _, _, large, sweep, dx, dy = map(float, re.findall(r"-?\d*\.?\d+", data))
+    half, chord = np.array([dx, dy]) / 2, np.hypot(dx, dy)
+    # On the page, whose second axis goes down, sweep 1 turns clockwise as seen, from the first axis to the second.
+    offset = np.sqrt(max(radius**2 - chord**2 / 4, 0)) * np.array([-dy, dx]) / chord
+    centre = half + (offset if large != sweep else -offset)
+    away = (half - centre) / np.linalg.norm(half - centre) if large == 0 else (centre - half) / np.linalg.norm(offset)
+    middle = np.array([x, y]) + centre + radius * away
+    wanted = curve.at([0.5])[0]
+    assert middle - 9.0 == pytest.approx(wanted * [1, -1], abs=0.03)
 
 
 @pytest.mark.parametrize("text", ["abABcdCD", "aabb", "aa"])

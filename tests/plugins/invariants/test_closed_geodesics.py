@@ -14,7 +14,7 @@ from orbiframe import GeometryError, Word
 from orbiframe.groups import PolygonGroup, regular_polygon
 from orbiframe.groups.conway_group import orbifold_group
 from orbiframe.words import standard_word
-from orbiframe.words.conway_symbol import Signature
+from orbiframe.words.conway_symbol import ConwaySymbol
 
 S2, E2, H2 = GEOMETRIES
 
@@ -94,7 +94,7 @@ def test_the_systole_of_kleins_quartic_and_of_its_orbifold() -> None:
     The trace t of that length is 2 cos(2 pi/7) + 1 = 2 cosh(l/2): in Q(cos 2 pi/7), as all traces of 237.
     """
     short = 2 * np.arccosh(np.cos(2 * np.pi / 7) + 0.5)
-    triangle = systole(orbifold_group(H2, Signature.parse("237")))
+    triangle = systole(orbifold_group(H2, ConwaySymbol.parse("237")))
     assert triangle.length == pytest.approx(short, abs=1e-12)
     found = systole(klein_quartic())
     assert (found.length, found.multiplicity) == (pytest.approx(4 * short, abs=1e-12), 21)
@@ -109,7 +109,7 @@ def test_systoles_of_flat_orbifolds(symbol: str, order: int, share: float, count
 
     p4m has glide reflections by half a diagonal of the square, p4g by half a side; turns join two classes.
     """
-    group = orbifold_group(E2, Signature.parse(symbol))
+    group = orbifold_group(E2, ConwaySymbol.parse(symbol))
     found = systole(group)
     assert found.length == pytest.approx(share * np.sqrt(order * group.area), abs=1e-12)
     assert found.multiplicity == count
@@ -187,5 +187,5 @@ def bent(amount: float) -> PolygonGroup:
 def test_the_error_shows_pairings_that_are_no_group() -> None:
     assert length_spectrum(regular("abABcdCD"), 7.0).error < 1e-11
     assert 1e-10 < length_spectrum(bent(1e-10), 7.0).error < 1e-7
-    with pytest.raises(GeometryError, match="Dirichlet cell"):
+    with pytest.raises(GeometryError, match="Dirichlet domain"):
         length_spectrum(bent(1e-6), 7.0)

@@ -12,7 +12,7 @@ from orbiframe_invariants.named_words import word_named
 
 from orbiframe.errors import GeometryError
 from orbiframe.groups.fundamental_polygon import regular_polygon
-from orbiframe.planes.precise_isometry import Spin
+from orbiframe.planes.precise_isometry import PreciseIsometry
 from orbiframe.words.word import Word, standard_word
 
 WORDS = ["abABcdCD", "abcdABCD", "aabbcc", "aabcBC", "abABcdCDefEF", "aabbccddee"]
@@ -29,7 +29,7 @@ def value(number: ExactNumber) -> complex:
 def matrix(element: ExactElement) -> np.ndarray:
     a, b = value(element.a), value(element.b)
     size = np.sqrt(abs(a) ** 2 - abs(b) ** 2)
-    return Spin(-1, np.array(a / size), np.array(b / size), np.array(element.reverses)).matrix
+    return PreciseIsometry(-1, np.array(a / size), np.array(b / size), np.array(element.reverses)).matrix
 
 
 @pytest.mark.parametrize("text", WORDS)

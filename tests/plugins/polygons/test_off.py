@@ -95,6 +95,8 @@ def test_colours_of_some_faces_only_are_left_out_with_a_warning(tmp_path):
         (PLAIN.replace("3 1 2 3", "2 1 2"), "line 9.*2 corners"),
         (PLAIN.replace("3 1 2 3", "3000000000 1 2 3"), "line 9"),
         (PLAIN.replace("3 1 2 3", "3 1 2"), "line 9"),
+        (PLAIN.replace("3 1 2 3", "3 1 2 3 255 0"), "line 9.*5 numbers after the count 3"),
+        (PLAIN.replace("3 1 2 3", "3 1 2 3 1 0 0 1 1"), "line 9.*8 numbers after the count 3"),
         (PLAIN.replace("OFF", "COFF"), "line 3.*6 or 7"),
         (PLAIN.encode("utf-16"), "UTF-16"),
         (PLAIN.encode() + b"\0\0", "line 11.*zero byte"),
