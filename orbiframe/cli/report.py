@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-WORTH_A_WARNING = 6.0
+WORTH_A_WARNING = 13.0  # up to there the error of a fit does not depend on crowding
 
 
 def write_report(path: Path, report: Mapping[str, Any]) -> None:

@@ -69,7 +69,7 @@ class Approximations:
         needed = size_needed(basis, energy)
         if needed > basis.size and self._given_size is None:
             return self.of_size(max(needed, basis.size + 100), density)
-        meaning = meaning_of(self.mapping.triangles, self.config.data.means, size)
+        meaning = meaning_of(self.mapping.facets, self.config.data.means, size)
         notes = () if needed <= basis.size else (too_few(basis.size, needed),)
         try:
             if meaning.smooth and self.config.data.lift:
@@ -166,7 +166,7 @@ class Density(NamedTuple):
         if refinement is self.refinement:
             return self.values
         face, barycentric = refinement.origins()
-        fine, weights = self.refinement.locate(face, barycentric)
+        fine, weights = self.refinement.locate_in_facets(face, barycentric)
         corners = self.values[self.refinement.polyhedron.triangles[fine]]
         return np.asarray(np.einsum("nc,nc->n", weights, corners))
 

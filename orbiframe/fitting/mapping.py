@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,7 @@ from orbiframe.fitting.config import Config
 from orbiframe.fitting.stages import Stages
 from orbiframe.groups.marked_group import MarkedGroup
 from orbiframe.meshes.bisection import Bisection, bisected, edge_length_for
+from orbiframe.meshes.flat_flips import FlatFlips, flat_flips
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.regular_triangles import regular_triangles
 from orbiframe.meshes.surface_type import SurfaceType
@@ -61,11 +63,21 @@ class Mapping:
     stages: Stages
     maps: dict[float, Mapped] = field(default_factory=dict)
 
+    @cached_property
+    def flips(self) -> FlatFlips | None:
+        """Needles in plane parts of the polyhedron, gone; an optimizer of its faces needs their own triangles."""
+        return flat_flips(self.triangles) if self.config.shape.open else None
+
+    @property
+    def facets(self) -> Polyhedron:
+        """The triangles after the flips."""
+        return self.triangles if self.flips is None else self.flips.after
+
     def for_size(self, size: int) -> Mapped:
         """The mesh refined so that samples and centres are dense enough for so many functions, and its map to X/H."""
-        longest = edge_length_for(self.triangles, max(_LEAST_VERTICES, _VERTICES_PER_FUNCTION * size))
+        longest = edge_length_for(self.facets, max(_LEAST_VERTICES, _VERTICES_PER_FUNCTION * size))
         if longest not in self.maps:
-            refinement = self.stages("refinement", bisected, self.triangles, longest, True)
+            refinement = self.stages("refinement", bisected, self.triangles, longest, True, self.flips)
             self.maps[longest] = self._mapped(refinement, refinement.polyhedron)
         return self.maps[longest]
 

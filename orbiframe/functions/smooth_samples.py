@@ -29,7 +29,7 @@ def vertex_samples(triangulation: Triangulation, refinement: Bisection, noise: f
     A vertex counts like a third of the area of its triangles. The length of fairness is that of the facets about.
     noise: the root mean square error of each coordinate of the vertices, where it is known.
     """
-    mesh, coarse = triangulation.polyhedron, refinement.coarse
+    mesh, coarse = triangulation.polyhedron, refinement.facets
     area, count = np.linalg.norm(vector_areas(coarse), axis=1), len(coarse.vertices)
     everywhere = places(triangulation).take(np.arange(len(mesh.vertices)))
     weights, values = np.zeros(len(mesh.vertices)), mesh.vertices.copy()
@@ -46,7 +46,7 @@ def semi_smooth_samples(triangulation: Triangulation, refinement: Bisection, spa
     it that have these bends at their ends. Its samples count the less the larger that is against the spacing of the
     functions. Fairness acts on the length of curved facets, and on the spacing elsewhere.
     """
-    coarse, flat = refinement.coarse, refinement.polyhedron
+    coarse, flat = refinement.facets, refinement.polyhedron
     area = np.linalg.norm(vector_areas(coarse), axis=1)
     sagitta = _sagittas(coarse, area)
     everywhere = places(triangulation)
@@ -88,7 +88,7 @@ def _lengths(triangulation: Triangulation, refinement: Bisection, area: Floats) 
 
 
 def _at_samples(triangulation: Triangulation, refinement: Bisection, of_facet: Floats) -> Floats:
-    """A quantity of the coarse triangles at all places: at a vertex the mean over its fine triangles."""
+    """A quantity of the facets at all places: at a vertex the mean over its fine triangles."""
     mesh = triangulation.polyhedron
     fine = refinement.spread(np.repeat(of_facet, 3).reshape(-1, 3, 1))[:, 0, 0]
     degree = np.maximum(np.bincount(mesh.tail, minlength=len(mesh.vertices)), 1)

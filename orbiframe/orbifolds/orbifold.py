@@ -67,16 +67,15 @@ class Orbifold:
         """The lifts of many patches at once: those of patches[i] within radii[i] have base i and stand together.
 
         The walk goes from a copy g to its neighbours g h, h a transition, as long as their origins stay within the
-        radius plus the largest radius of a patch. That finds every copy if X is tiled by polygons, one in each copy and
+        radius plus the radius of their patch. That finds every copy if X is tiled by polygons, one in each copy and
         within the radius of its patch, and a transition joins any two polygons with a common side: the geodesic from
         origin to origin runs through a chain of neighbours that all come as near. (Where it runs through a corner, one
         beside it does not.) In S^2 no distance exceeds pi, and a large radius visits the whole finite group.
         """
         base, reach = np.asarray(patches, dtype=np.intp), np.asarray(radii, dtype=np.float64)
-        limit = reach + self.atlas.radius.max()
         origin = self.geometry.origin
         levels = []
-        for level in self._walk(base, limit):
+        for level in self._walk(base, reach):
             levels.append(level.take(self.geometry.distance(origin, level.isometry[:, :, 0]) <= reach[level.base]))
         found = Copies(*(np.concatenate([getattr(x, name) for x in levels]) for name in ("base", "patch", "isometry")))
         return found.take(np.argsort(found.base, kind="stable"))
@@ -100,20 +99,21 @@ class Orbifold:
             patch[far], x[far] = self.atlas.head[step[best]], self.geometry.settle(place[best])
         return Points(patch, x)
 
-    def _walk(self, patches: Ints, limit: Floats) -> Iterator[Copies]:
+    def _walk(self, patches: Ints, reach: Floats) -> Iterator[Copies]:
         """Breadth first, level by level: a neighbour lies in the level itself, the one before or the next."""
         level = Copies(np.arange(len(patches)), patches, np.tile(np.eye(3), (len(patches), 1, 1)))
         before = level.take(np.zeros(0, dtype=np.intp))
         while len(level.base):
             yield level
-            before, level = level, self._next_level(before, level, limit)
+            before, level = level, self._next_level(before, level, reach)
 
-    def _next_level(self, before: Copies, level: Copies, limit: Floats) -> Copies:
-        """The neighbours of a level that lie within the limit and are new."""
+    def _next_level(self, before: Copies, level: Copies, reach: Floats) -> Copies:
+        """The neighbours of a level that come within reach and are new."""
         atlas = self.atlas
         parent, step = self.steps(level.patch)
         place = np.einsum("kij,kj->ki", level.isometry[parent], atlas.isometry[step, :, 0])
-        near = self.geometry.distance(self.geometry.origin, place) <= limit[level.base[parent]]
+        limit = reach[level.base[parent]] + atlas.radius[atlas.head[step]]
+        near = self.geometry.distance(self.geometry.origin, place) <= limit
         parent, step, place = parent[near], step[near], place[near]
         base, patch = level.base[parent], atlas.head[step]
         known = len(before.base) + len(level.base)

@@ -157,7 +157,7 @@ def _strict(path: Path) -> Iterator[None]:
 
 def _reason(printed: str, error: BaseException) -> str:
     """What meshio says for people, in print or by an error of its own; nothing of bare errors of Python."""
-    own = (meshio.ReadError, meshio.WriteError, FormatError, EOFError, MemoryError, OSError)
+    own = (meshio.ReadError, meshio.WriteError, FormatError, EOFError, MemoryError, RuntimeError)
     said = _brief(printed) or (_brief(str(error)) or type(error).__name__ if isinstance(error, own) else "")
     return f": {said}" if said else "; is it damaged, or of another format?"
 

@@ -100,10 +100,15 @@ def _head(text: Text) -> tuple[int, _Head]:
 
 def _set(text: Text, at: int, head: _Head, name: str, value: str) -> None:
     if name in head.zone:
-        text.refuse(at, f"{name} stands twice in the zone")
+        text.refuse(at, f"{_plain(name)} stands twice in the zone")
     if name not in HARMLESS | KNOWN:
-        text.refuse(at, f"{name[:40]} is not known, or changes what others mean; it is not read")
+        text.refuse(at, f"{_plain(name)} is not known, or changes what others mean; it is not read")
     head.zone[name] = value.strip('"').upper()
+
+
+def _plain(name: str) -> str:
+    """A name of a file as it may stand in a sentence."""
+    return name if name.isalnum() and len(name) < 40 else shown(name.encode())
 
 
 def _meant(text: Text, head: _Head) -> tuple[list[int], int, int, int]:
@@ -141,8 +146,8 @@ def _widths(text: Text, head: _Head, nodes: int, elements: int) -> Ints:
     widths = np.full(len(head.variables), nodes, dtype=object)
     location = head.zone.get("VARLOCATION", "")
     if _packing(text, head) == "BLOCK":
-        for listed, kind in re.findall(r"\[([\d,\s-]+)\]\s*\)?\s*=\s*\(?(\w+)", location):
-            for first, last in re.findall(r"(\d{1,6})\s*(?:-\s*(\d{1,6}))?", listed):
+        for listed, kind in re.findall(r"\[([0-9,\s-]+)\]\s*\)?\s*=\s*\(?(\w+)", location):
+            for first, last in re.findall(r"([0-9]{1,6})\s*(?:-\s*([0-9]{1,6}))?", listed):
                 if kind == "CELLCENTERED":
                     widths[int(first) - 1 : int(last or first)] = elements
     elif "CELLCENTERED" in location:

@@ -102,6 +102,10 @@ def test_strips_and_pixels(tmp_path):
         (PLAIN.replace("4 0 3", "4 0 2.5"), "2.5"),
         (PLAIN.replace("POLYGONS 6", "POLYGONS 7"), "do not fit"),
         (PLAIN + "POLYGONS 0 0\n", "twice"),
+        (
+            PLAIN + "CELL_DATA 6\nSCALARS vtkGhostType unsigned_char\nLOOKUP_TABLE default\n0 0 0 0 0 1\n",
+            "vtkGhostType",
+        ),
         (PLAIN + "TRANSFORM 1 1\n", "TRANSFORM.*not read"),
         (PLAIN.replace("POLYGONS 6 30\n4 0 3 2 1", "POLYGONS 6 28\n2 0 3"), "2 corners"),
         (GRID.replace("9 " * 6, "9 " * 5), "6 numbers are declared"),
@@ -138,6 +142,9 @@ def xml(*, compressor: str = "", arrays: dict[str, str] | None = None, more: str
     )
 
 
+GHOSTS = '<CellData><DataArray type="UInt8" Name="vtkGhostType" format="ascii">0 0 0 0 0 0</DataArray></CellData>'
+
+
 def packed(data: bytes, blocks: list[bytes], size: int) -> str:
     """Blocks as VTK writes them: counts and sizes in base64, then the blocks in base64."""
     head = struct.pack(f"<{3 + len(blocks)}I", len(blocks), size, len(data) % size, *map(len, blocks))
@@ -146,6 +153,7 @@ def packed(data: bytes, blocks: list[bytes], size: int) -> str:
 
 def test_text_and_a_document_type(tmp_path):
     assert lists(read(of(tmp_path, xml(), ".vtp"))) == QUADS
+    assert lists(read(of(tmp_path, xml().replace("</Piece>", GHOSTS + "</Piece>"), ".vtp"))) == QUADS
     assert lists(read(of(tmp_path, xml(head='<!DOCTYPE VTKFile SYSTEM "x.dtd">'), ".vtp"))) == QUADS
 
 
@@ -201,6 +209,7 @@ def test_a_compressed_block_that_swells_is_stopped(tmp_path):
         (xml(arrays={"points": "####"}), "base64"),
         (xml(arrays={"points": "AAAA"}), "cut short"),
         (xml(arrays={"points": b64encode(struct.pack("<I", 2**31)).decode()}), "cut short"),
+        (xml().replace("</Piece>", GHOSTS.replace("0 0 0", "0 0 1") + "</Piece>"), "some cells are ghosts"),
         (xml()[:-9], "no sound XML"),
     ],
 )
