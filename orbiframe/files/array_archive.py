@@ -57,7 +57,9 @@ class ArrayArchive:
             content = member.read(shape.size)
             if len(content) != shape.size or member.read(1):
                 raise ValueError(f"the array '{name}' is not as long as its header says")
-        return np.frombuffer(content, shape.type).reshape(shape.shape, order="F" if shape.by_columns else "C")
+        numbers = np.frombuffer(bytearray(content), shape.type)  # of bytes that may be written, as compiled code asks
+        native = numbers.astype(shape.type.newbyteorder("="), copy=False)
+        return native.reshape(shape.shape, order="F" if shape.by_columns else "C")
 
     def _read_shapes(self) -> dict[str, Shape]:
         shapes: dict[str, Shape] = {}

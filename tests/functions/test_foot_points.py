@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fitted import fitted
-
 from orbiframe.functions.foot_points import around, foot_points, foot_step, moved
+
 from orbiframe.orbifolds.atlas import Points
 
 

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from fitted import REGISTRY, grid, round_sphere, round_torus
+from orbiframe.triangulations.girth import girth, girth_radius, site_density, site_lengths
 
 from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.meshes.sizes import vector_areas
-from orbiframe.triangulations.girth import girth, girth_radius, site_density, site_lengths
 from orbiframe.triangulations.triangulation import Triangulation
 
 
