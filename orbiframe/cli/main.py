@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 
 from orbiframe.cli import plugin as commands
+from orbiframe.cli.progress import compilation_told
 from orbiframe.cli.speech import any_letter, fill_closed_streams, say, silence
 from orbiframe.components.registry import Registry
 from orbiframe.errors import OrbiframeError, UsageError
@@ -53,16 +54,28 @@ def _fix_threads() -> None:
 def _run(arguments: list[str]) -> int:
     registry = Registry.discover()
     registry.register("commands", commands)
+    args = parsed(arguments, registry)
+    with compilation_told(quiet=getattr(args, "quiet", False)):
+        status: int = args.run(args, registry)
+    return status
+
+
+def parsed(arguments: list[str], registry: Registry) -> argparse.Namespace:
+    """A command of a registry with its arguments; to be run as `args.run(args, registry)`.
+
+    Raises UsageError for an unknown command and SystemExit for wrong arguments.
+    """
     chosen = next((word for word in arguments if not word.startswith("-")), None)
     parser = _parser(registry, chosen)
     if chosen is not None:
         registry.component("command", chosen)
-    args = parser.parse_args(arguments)
-    if chosen is None:
-        parser.print_help()
-        return 0
-    status: int = args.run(args, registry)
-    return status
+    parser.set_defaults(run=lambda *_: _print_help(parser))
+    return parser.parse_args(arguments)
+
+
+def _print_help(parser: argparse.ArgumentParser) -> int:
+    parser.print_help()
+    return 0
 
 
 def _parser(registry: Registry, chosen: str | None) -> argparse.ArgumentParser:

@@ -76,6 +76,13 @@ _SHAPES: dict[str, tuple[type, tuple[int | str, ...]]] = {
     "origin": (np.float64, (3,)),
     "scale": (np.float64, ()),
 }
+# Arrays that some surfaces have.
+_OPTIONAL: dict[str, tuple[type, tuple[int | str, ...]]] = {
+    "density": (np.float64, ("W",)),
+    "flip_halfedge": (np.intp, ("L", 2)),
+    "flip_crossing": (np.float64, ("L", 2)),
+}
+_KINDS = _SHAPES | _OPTIONAL
 
 
 def save_surface(surface: OrbifoldSurface, path: Path) -> None:
@@ -119,7 +126,7 @@ def _read(path: Path) -> tuple[Arrays, About]:
         with ArrayArchive(path) as archive:
             about = _read_about(archive, path)
             _require_shapes(archive.shapes)
-            return {name: archive.read(name) for name in _SHAPES}, about
+            return {name: archive.read(name) for name in _KINDS if name in archive.shapes}, about
     except (BrokenLaw, FormatError):
         raise
     except Exception as error:
@@ -158,7 +165,9 @@ def _no_number(name: str) -> float:
 def _require_shapes(shapes: Mapping[str, Shape]) -> None:
     """Raise BrokenLaw unless all arrays are there, of their types and of shapes that fit together."""
     lengths: dict[str, tuple[int, str]] = {}
-    for name, (type_, asked) in _SHAPES.items():
+    for name, (type_, asked) in _KINDS.items():
+        if name in _OPTIONAL and name not in shapes:
+            continue
         found = shapes[name]
         if found.type.newbyteorder("=") != np.dtype(type_):
             raise BrokenLaw(name, f"its numbers are {np.dtype(type_).name}, not {found.type.name}")
@@ -169,7 +178,7 @@ def _require_shapes(shapes: Mapping[str, Shape]) -> None:
             if length != known:
                 like = f", as in '{owner}'" if owner else ""
                 raise BrokenLaw(name, f"it is {found.shape}, but {known} is required{like}")
-    if extra := set(shapes) - set(_SHAPES) - {"about"}:
+    if extra := set(shapes) - set(_KINDS) - {"about"}:
         raise BrokenLaw(min(extra), "surface files have no such array")
 
 
@@ -185,7 +194,10 @@ def _surface(arrays: Arrays, about: About, registry: Components, path: Path) -> 
     atlas = require_atlas(arrays, geometry)
     orbifold = Orbifold(atlas, chi, about["orientable"], float(arrays["area"]))
     places = arrays["patch"], arrays["points"], arrays["transition"]
-    triangulation = Triangulation(orbifold, fine, *places, about["group"], about["weights"])
+    density = arrays.get("density")
+    if density is not None:
+        require(np.isfinite(density) & (density > 0), "density", "numbers are finite and positive")
+    triangulation = Triangulation(orbifold, fine, *places, about["group"], about["weights"], density)
     require_map(triangulation)
     coefficients, origin, scale = arrays["coefficients"], arrays["origin"], float(arrays["scale"])
     for name in ("coefficients", "origin", "scale"):
@@ -270,4 +282,11 @@ def _arrays(surface: OrbifoldSurface) -> dict[str, NDArray[Any]]:
         "origin": surface.origin,
         "scale": surface.scale,
     }
-    return {name: np.asarray(array, dtype=_SHAPES[name][0]) for name, array in found.items()}
+    found |= {name: array for name, array in _optional(surface).items() if array is not None}
+    return {name: np.asarray(array, dtype=_KINDS[name][0]) for name, array in found.items()}
+
+
+def _optional(surface: OrbifoldSurface) -> dict[str, NDArray[Any] | None]:
+    flips = surface.refinement.flips
+    turned = {} if flips is None else {"flip_halfedge": flips.halfedge, "flip_crossing": flips.crossing}
+    return {"density": surface.triangulation.density, **turned}

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from orbiframe.errors import OrbiframeError
 from orbiframe.meshes.bisection import Bisection
+from orbiframe.meshes.flat_flips import FlatFlips
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.surface_type import surface_type
 from orbiframe.orbifolds.atlas import Atlas
@@ -77,12 +78,27 @@ def require_refinement(arrays: Arrays, coarse: Polyhedron, fine: Polyhedron) -> 
     leaves = np.sort(child[side < 0])
     require(np.array_equal(leaves, np.arange(fine.face_count)), "child", "every fine triangle is one leaf")
     require(_is_shallow(side, child, roots), "child", f"no triangle is halved more than {_DEEPEST} times")
-    refinement = Bisection(coarse, fine, side, child)
-    places = refinement.spread(coarse.vertices[coarse.triangles])
+    refinement = Bisection(coarse, fine, side, child, _flips(arrays, coarse))
+    places = refinement.spread(coarse.vertices[refinement.facets.triangles])
     size = max(1.0, float(np.abs(coarse.vertices).max()))
     near = np.abs(places - fine.vertices[fine.triangles]) <= _NEAR * size
     require(near, "fine_vertices", "fine triangles are halves of coarse ones")
     return refinement
+
+
+def _flips(arrays: Arrays, coarse: Polyhedron) -> FlatFlips | None:
+    """The flips of edges of the coarse mesh, if there are any: of two triangles each, that are neighbours by then."""
+    if "flip_halfedge" not in arrays:
+        return None
+    halfedge, crossing = arrays["flip_halfedge"], arrays["flip_crossing"]
+    sides = len(coarse.tail)
+    require((halfedge >= 0) & (halfedge < sides), "flip_halfedge", f"halfedges are 0 to {sides - 1}")
+    require(halfedge[:, 0] // 3 != halfedge[:, 1] // 3, "flip_halfedge", "an edge of two triangles is flipped")
+    shares = (crossing > 0) & (crossing < 1)
+    require(shares[:, 0] & (crossing[:, 1] >= 0) & (crossing[:, 1] <= 1), "flip_crossing", "shares are 0 to 1")
+    flips = FlatFlips(coarse, halfedge, crossing)
+    require(flips.is_sound, "flip_halfedge", "the two halfedges are twins when they are flipped")
+    return flips
 
 
 def _is_shallow(side: Ints, child: Ints, roots: int) -> bool:

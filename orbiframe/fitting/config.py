@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from annotated_types import Ge, Gt
 
@@ -40,12 +40,27 @@ class Step:
 class Output:
     """What to make of the surface.
 
-    refine: every triangle of the mesh becomes refine^2 triangles, None for as many as a fine picture needs; tolerance:
-    largest root mean square error allowed, relative to the diagonal of the bounding box, None for a fixed size.
+    refine: every triangle of the mesh becomes refine^2 triangles, None for as many as a fine picture needs; tolerance
+    and max_error: the largest root mean square and the largest distance allowed, relative to the diagonal of the
+    bounding box, None for a fixed size.
     """
 
     refine: Annotated[int, Ge(1)] | None = None
     tolerance: Annotated[float, Gt(0)] | None = None
+    max_error: Annotated[float, Gt(0)] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Data:
+    """What the mesh means.
+
+    means: "facets", the polyhedron is the truth; "smooth", its vertices lie on a smooth surface; "semi-smooth", so they
+    do where facets are curved; "auto" decides by its bends. lift: whether a smooth mesh is mapped again after it has
+    been lifted onto its first surface.
+    """
+
+    means: Literal["auto", "smooth", "semi-smooth", "facets"] = "auto"
+    lift: bool = True
 
 
 OPEN_NAMES = ("auto", "mesh", "none")
@@ -58,15 +73,15 @@ STEPS = {
     "map": ("parametrizer", "method", "auto"),
     "shape": ("optimizer", "method", "none"),
     "basis": ("basis", "name", "gaussian"),
-    "fitter": ("fitter", "name", "least-squares"),
+    "fitter": ("fitter", "name", "sliding"),
 }
-TABLES = (*STEPS, "output")
+TABLES = (*STEPS, "data", "output")
 _LARGEST_FILE = 2**20
 
 
 @dataclass(frozen=True, slots=True)
 class Config:
-    """A fit in words: a step for each of the tables of `STEPS`, the output, plugin files.
+    """A fit in words: a step for each of the tables of `STEPS`, the output, what the mesh means, plugin files.
 
     mesh: the reader, "auto" by the file suffix; group: "mesh" takes the group from the mesh; marking: cuts the mesh
     open for a named group; map: "auto" takes the parametrizer that fits the geometry and the group; shape: changes
@@ -76,6 +91,7 @@ class Config:
 
     steps: Mapping[str, Step]
     output: Output = field(default_factory=Output)
+    data: Data = field(default_factory=Data)
     plugins: tuple[Path, ...] = ()
     places: Mapping[str, str] = field(default_factory=dict)
 
@@ -107,7 +123,8 @@ class Config:
         files = checked_value(tuple[str, ...], tables.get("plugins", []), "plugins", places)
         steps = {table: _step(table, _table(tables, table, places), places) for table in STEPS}
         output = Output(**checked_options(Output, _table(tables, "output", places), "output", places))
-        return cls(steps, output, tuple(folder / file for file in files), places)
+        data = Data(**checked_options(Data, _table(tables, "data", places), "data", places))
+        return cls(steps, output, data, tuple(folder / file for file in files), places)
 
     @property
     def mesh(self) -> Step:

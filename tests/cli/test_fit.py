@@ -1,14 +1,12 @@
 from __future__ import annotations
 
-import io
 import json
 import os
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
-from orbiframe.cli.progress import Progress
+from orbiframe import MapError
 from orbiframe.cli.report import json_text, summary, write_report
 from orbiframe.fitting import pipeline
 
@@ -60,6 +58,23 @@ def test_a_configuration_file_and_overrides(orbiframe, cube, tmp_path):
     ran = orbiframe("fit", cube, "-o", tmp_path / "a.ply", "--config", config, "--set", "basis.size=40", "--json")
     report = json.loads(ran.out)
     assert (report["fit"]["size"], report["output"]["faces"]) == (40, 12 * 4)
+
+
+@pytest.mark.usefixtures("_no_fit")
+def test_options_with_a_name_of_their_own_win_over_set(orbiframe, cube, tmp_path, monkeypatch):
+    """Whatever their order on the command line is."""
+    asked = []
+
+    def fit(mesh, config, *rest):
+        asked.append((config.basis.name, config.basis.options["size"], config.output.refine))
+        raise MapError("enough")
+
+    monkeypatch.setattr(pipeline, "fit", fit)
+    given = ["--set", "basis.size=300", "--set", "output.refine=7", "--set", "basis.name=gaussian"]
+    named = ["--size", "40", "--refine", "2", "--basis", "ps2"]
+    for arguments in (given + named, named + given):
+        assert orbiframe("fit", cube, "-o", tmp_path / "a.ply", *arguments).status == 1
+    assert asked == [("ps2", 40, 2)] * 2
 
 
 def test_a_plugin_file_takes_part(orbiframe, small, tmp_path):
@@ -151,20 +166,6 @@ def test_a_mesh_with_a_hole_is_refused_in_one_sentence(orbiframe, cube, tmp_path
     assert "4 open edges" in ran.err
     assert len(ran.err.splitlines()) == 1
     assert not (tmp_path / "a.ply").exists()
-
-
-def test_progress_is_shown_on_a_terminal_only():
-    terminal = SimpleNamespace(isatty=lambda: True, flush=lambda: None, text=[])
-    terminal.write = terminal.text.append
-    progress = Progress(terminal)
-    progress("map", None)
-    progress("map", 1.25)
-    assert "".join(terminal.text).replace("\r", "\n").splitlines() == ["map …", "map                1.25 s"]
-    for silent in (Progress(file := io.StringIO()), Progress(terminal, quiet=True)):
-        terminal.text.clear()
-        silent("map", None)
-        silent("map", 1.0)
-        assert (file.getvalue(), terminal.text) == ("", [])
 
 
 DATASETS = Path(__file__).parents[2] / "datasets"

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -121,3 +122,19 @@ def test_main_leaves_the_warning_filters_alone():
     before = list(warnings.filters)
     main(["--help"])
     assert warnings.filters == before
+
+
+@pytest.mark.parametrize("chosen", [{}, {"OMP_NUM_THREADS": "3"}])
+def test_linear_algebra_has_one_thread_unless_the_user_says_otherwise(chosen):
+    """In a process that knows nothing of what the tests set."""
+    code = """
+import json, os, sys
+from orbiframe.cli.main import THREADS, main
+assert "numpy" not in sys.modules
+main(["--version"])
+print(json.dumps({name: os.environ.get(name) for name in THREADS}))
+"""
+    clean = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")} | chosen
+    run = subprocess.run([sys.executable, "-c", code], env=clean, capture_output=True, text=True, check=True)
+    found = json.loads(run.stdout.splitlines()[-1])
+    assert found == dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1") | chosen

@@ -8,6 +8,7 @@ import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
+import hard_surfaces as hard
 import numpy as np
 import pytest
 from fitted import REGISTRY, config, fitted, mesh_of
@@ -59,6 +60,22 @@ def test_a_loaded_surface_evaluates_to_the_same_bits(name: str, tmp_path: Path) 
     assert loaded.triangulation.weights == surface.triangulation.weights
 
 
+def test_flips_of_needles_are_saved(tmp_path: Path) -> None:
+    """A plate with triangles without height; a file that flips other edges than those of two triangles is refused."""
+    surface = pipeline.fit(hard.with_slivers(hard.plate(1, 2, 2), 0.2, 0.0, 2), config(SIZE), REGISTRY).surface
+    assert len(surface.refinement.flips.halfedge) > 100
+    save_surface(surface, tmp_path / "s.npz")
+    assert_same_bits(surface, load_surface(tmp_path / "s.npz", REGISTRY))
+
+    def refused(change: Callable[[dict[str, np.ndarray]], None], law: str) -> None:
+        with pytest.raises(FormatError, match=rf"wild\.npz: the array 'flip_halfedge' breaks a law: {law}"):
+            load_surface(changed(tmp_path / "s.npz", tmp_path / "wild.npz", change), REGISTRY)
+
+    refused(lambda arrays: arrays["flip_halfedge"].__iadd__(10**6), "halfedges are 0 to")
+    refused(lambda arrays: arrays["flip_halfedge"].__setitem__((5, 1), arrays["flip_halfedge"][5, 0]), "an edge of two")
+    refused(lambda arrays: arrays["flip_halfedge"].__setitem__(5, arrays["flip_halfedge"][6]), "the two halfedges are")
+
+
 def test_options_of_the_basis_and_place_in_space_are_kept(tmp_path: Path) -> None:
     mesh = mesh_of("torus")
     moved = mesh.with_vertices(mesh.vertices * 1e-3 + 50)
@@ -66,7 +83,7 @@ def test_options_of_the_basis_and_place_in_space_are_kept(tmp_path: Path) -> Non
     save_surface(surface, tmp_path / "s.npz")
     loaded = load_surface(tmp_path / "s.npz", REGISTRY)
     assert_same_bits(surface, loaded)
-    assert loaded.basis_options == {"size": 50, "width": 2.0, "reach": 2.5}
+    assert loaded.basis_options == {"size": 50, "width": 2.0, "reach": 2.5, "grading": 0.3}
 
 
 def test_saving_twice_gives_the_same_arrays_and_replaces_the_file(saved: Path, tmp_path: Path) -> None:

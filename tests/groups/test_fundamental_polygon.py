@@ -96,6 +96,43 @@ def test_conditions_are_defects_that_name_the_place():
         sharp.require_conditions()
 
 
+@pytest.mark.parametrize("text", ["abABcdCD", "aabbcc"])
+def test_angles_are_refused_that_are_wrong_by_a_millionth(text):
+    """Regular polygons a little too large or too small: the sides agree, the angles of the one cycle do not."""
+    exact = regular_polygon(H2, Word.parse(text))
+    directions = 2 * np.pi * np.arange(len(text)) / len(text)
+    for change, fits in [(1e-6, False), (-1e-6, False), (1e-11, True)]:
+        polygon = FundamentalPolygon(H2, H2.from_polar(exact.circumradius + change, directions), exact.word)
+        assert np.abs(polygon.length_defects).max() < 1e-13
+        assert 0.1 * abs(change) < abs(polygon.angle_defects[0]) < 20 * abs(change)
+        if fits:
+            polygon.require_conditions()
+        else:
+            with pytest.raises(GeometryError, match="need 2 pi"):
+                polygon.require_conditions()
+
+
+def test_sides_are_refused_that_differ_by_a_millionth():
+    """In the plane the angles of a quadrangle are right whatever its sides are."""
+    for change, fits in [(1e-6, False), (1e-11, True)]:
+        corners = E2.from_chart("projective", np.array([[-0.5, -0.5], [0.5 + change, -0.5], [0.5, 0.5], [-0.5, 0.5]]))
+        polygon = FundamentalPolygon(E2, corners, Word.parse("abAB"))
+        assert np.abs(polygon.length_defects).max() == pytest.approx(change, rel=1e-4)
+        if fits:
+            polygon.require_conditions()
+        else:
+            with pytest.raises(GeometryError, match="sides 0 and 2"):
+                polygon.require_equal_lengths()
+
+
+@pytest.mark.parametrize(("width", "height"), [(1, 2), (2, 1), (3, 0.25)])
+def test_inradius_is_the_distance_of_the_nearest_side(width, height):
+    corners = np.array([[-width, -height], [width, -height], [width, height], [-width, height]]) / 2
+    polygon = FundamentalPolygon(E2, E2.from_chart("projective", corners), Word.parse("abAB"))
+    assert polygon.inradius == pytest.approx(min(width, height) / 2)
+    assert polygon.circumradius == pytest.approx(np.hypot(width, height) / 2)
+
+
 @pytest.mark.parametrize(
     ("corners", "message"),
     [

@@ -76,7 +76,7 @@ def test_lengths_and_valences_count_each_edge_once(mesh: Polyhedron) -> None:
     np.testing.assert_array_equal(valences(mesh), np.bincount(ends.ravel()))
 
 
-@pytest.mark.parametrize(("height", "thin"), [(1e-3, []), (1e-5, [0]), (0.0, [])])
+@pytest.mark.parametrize(("height", "thin"), [(1e-3, []), (1.1e-4, []), (0.9e-4, [0]), (1e-5, [0]), (0.0, [])])
 def test_needles_are_thin_but_have_an_area(height: float, thin: list[int]) -> None:
     mesh = Polyhedron.from_faces(
         [[0, 0, 0], [1, 0, 0], [0.5, height, 0], [0.5, 1, 0]], [[0, 1, 2], [1, 3, 2], [3, 0, 2]]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import reference_surfaces as surfaces
 
+from orbiframe.orbifolds.atlas import Atlas
 from orbiframe.orbifolds.orbifold import Orbifold
 
 
@@ -94,3 +95,45 @@ def test_every_point_is_covered_by_some_lift() -> None:
     _, isometry = orbifold.lifts(0, 3 + surfaces.OCTAGON_RADIUS)
     nearest = geometry.distance(x[:, None], isometry[None, :, :, 0]).min(axis=1)
     assert nearest.max() <= surfaces.OCTAGON_RADIUS + 1e-12
+
+
+def chequered(side: int, shift: float) -> tuple[Orbifold, np.ndarray]:
+    """The torus in side x side squares that know their four neighbours alone, and the origins of their frames.
+
+    The frame of a black square lies `shift` away from its middle: a neighbour of a white one is far from it.
+    """
+    i, j = np.divmod(np.arange(side**2), side)
+    origin = (np.stack([i, j], axis=1) + 0.5) / side + np.outer((i + j) % 2, [shift, 0.0])
+    ends, steps = [(-1, -1)], [np.eye(3)]
+    for k in range(side**2):
+        for across in ((1, 0), (0, 1), (-1, 0), (0, -1)):
+            beyond = np.array([i[k], j[k]]) + across
+            ends.append((k, int(beyond[0] % side * side + beyond[1] % side)))
+            step = np.eye(3)
+            step[1:, 0] = origin[ends[-1][1]] + beyond // side - origin[k]
+            steps.append(step)
+    tail, head = np.array(ends).T
+    back = [0] + [1 + 4 * q + (n + 2) % 4 for n, q in zip(np.tile(range(4), side**2), head[1:], strict=True)]
+    radius = np.sqrt(0.5) / side + shift * ((i + j) % 2)
+    atlas = Atlas(surfaces.torus().geometry, radius, tail, head, np.array(back), np.array(steps))
+    return Orbifold(atlas, 0, True, 1.0), origin
+
+
+@pytest.mark.parametrize("radius", [0.2, 0.6, 1.4])
+def test_lifts_that_are_reached_only_through_patches_farther_out_are_found(radius: float) -> None:
+    """Every square has one frame in each cell of the lattice: all of Z^2 is tried."""
+    orbifold, origin = chequered(4, 2.0)
+    n = np.arange(-5, 6)
+    lattice = np.stack(np.meshgrid(n, n), axis=-1).reshape(-1, 2)
+    for patch in (0, 1, 6):
+        found, isometry = orbifold.lifts(patch, radius)
+        place = origin[:, None] + lattice - origin[patch]
+        square, cell = np.nonzero(np.linalg.norm(place, axis=-1) <= radius)
+        expected = np.column_stack([square, place[square, cell]])
+        got = np.column_stack([found, isometry[:, 1:, 0]])
+        assert len(np.unique(np.round(got, 6), axis=0)) == len(got) == len(expected)
+        np.testing.assert_allclose(_sorted(got), _sorted(expected), atol=1e-9)
+
+
+def _sorted(rows: np.ndarray) -> np.ndarray:
+    return rows[np.lexsort(np.round(rows, 6).T)]

@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import spline_checks as checks
-from exact_surfaces import at_lattice, on_cells, surface_of
+from exact_surfaces import REGISTRY, at_lattice, on_cells, surface_of
 from orbiframe_bases.bernstein import Bernstein
 from orbiframe_bases.powell_sabin import PowellSabin2
 
 from orbiframe import FitError
+from orbiframe.functions.samples import coordinate_samples
 from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.meshes.orientation import reversed_faces
 from orbiframe.surfaces import PeriodicPatch, patches_of
@@ -19,6 +20,7 @@ from orbiframe.surfaces.patch_gluing import alike, quartered
 from orbiframe.surfaces.periodic_patch import _pieces
 from orbiframe.surfaces.triangle_patches import triangle_patches
 from orbiframe.testing.polyhedra import reference_polyhedra
+from orbiframe.triangulations import GeodesicTriangulation
 
 SURFACES = ["tetrahedron", "projective plane", "torus", "Klein bottle", "double torus"]
 FAMILIES = [
@@ -122,6 +124,42 @@ def test_gluing_has_the_topology_of_the_surface(name):
             vertices, sides = gluing.corner_classes(corners).max() + 1, len(gluing.twin)
             assert vertices - sides // 2 + sides // corners == chi
         assert triangles.same.any() != domain.orbifold.orientable
+
+
+@pytest.mark.parametrize("name", ["tetrahedron", "torus", "double torus"])
+def test_triangles_in_mirrored_frames_make_the_same_surface(name):
+    """Seen in a mirror a triangle runs the other way, so that some gluings reverse on an orientable surface too."""
+    surface = surface_of(name, "ps2")
+    chosen = np.random.default_rng(7).random(surface.basis.domain.face_count) < 0.4
+    domain = mirrored(surface.basis.domain, chosen)
+    assert domain.same.any()
+    assert domain.gluing_defect < 1e-9
+    basis = PowellSabin2(surface.orbifold, domain)
+    fitter = REGISTRY.load("fitter", "least-squares")()
+    fitted = fitter.fit(basis, coordinate_samples(surface.triangulation))
+    patches = patches_of(replace(surface, basis=basis, coefficients=fitted))
+    assert not patches.gluing.same.any()
+    quads = patches.quadrilaterals()
+    require_watertight(quads)
+    assert quads.volume == pytest.approx(patches_of(surface).quadrilaterals().volume, rel=1e-6)
+
+
+def mirrored(domain: GeodesicTriangulation, chosen: np.ndarray) -> GeodesicTriangulation:
+    """The same triangles, the chosen ones in frames that are mirrored: corners 0, 2, 1, and sides the other way."""
+    mirror = np.where(chosen[:, None, None], np.diag([1.0, 1.0, -1.0]), np.eye(3))
+    halfedge = np.arange(3 * domain.face_count)
+    old = np.where(np.repeat(chosen, 3), 3 * (halfedge // 3) + 2 - halfedge % 3, halfedge)
+    twin = domain.twin[old]
+    here, there = halfedge // 3, twin // 3
+    corner = np.where(chosen[:, None], [0, 2, 1], [0, 1, 2])
+    return replace(
+        domain,
+        corners=np.take_along_axis(domain.corners, corner[..., None], 1) @ mirror,
+        twin=old[twin],
+        same=domain.same[old] ^ chosen[here] ^ chosen[there],
+        gluing=mirror[here] @ domain.gluing[old] @ mirror[there],
+        placement=domain.placement @ mirror,
+    )
 
 
 @pytest.mark.parametrize("name", ["double torus", "projective plane"])

@@ -63,6 +63,15 @@ def test_an_embedding_is_positive_and_covers_the_surface_once(made: Triangulatio
     assert made.relation_defect < 1e-9
 
 
+@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("wrong", [0.5, 0.99, 1.01, 2.0])
+def test_a_map_that_does_not_have_the_area_of_the_surface_shows_it(name: str, wrong: float) -> None:
+    """A surface `wrong` times as large as what is covered: the part of it that is missing or too much."""
+    made = closed_form(name, 2)
+    larger = replace(made, orbifold=replace(made.orbifold, area=wrong * made.orbifold.area))
+    assert larger.area_defect == pytest.approx(abs(1 / wrong - 1), rel=1e-9)
+
+
 @pytest.mark.parametrize("made", everywhere())
 def test_transitions_of_twins_are_inverse_or_equal(made: Triangulation) -> None:
     mesh, atlas, t = made.polyhedron, made.orbifold.atlas, made.transition

@@ -110,6 +110,19 @@ def test_the_sphere_hides_what_is_behind():
     assert area + rest == pytest.approx(np.pi, rel=1e-3)
 
 
+@pytest.mark.parametrize("tilt", [0.1, 0.4, 0.7, 1.0, 1.3])
+def test_of_a_turned_hemisphere_half_a_disc_and_half_an_ellipse_are_seen(tilt):
+    """Its border meets the outline in opposite points, between which no geodesic is the shortest."""
+    model, angles = model_of(S2), 2 * np.pi * np.arange(40) / 40
+    corners = S2.from_polar(np.pi / 2, angles) @ S2.translation(tilt, 0.3).T
+    pole = S2.translation(tilt, 0.3)[:, 0]
+    eye = np.array([np.sin(model.elevation), 0.0, -np.cos(model.elevation)])
+    (path,) = model.paths(corners[None])
+    x, y = np.concatenate([curve.at(np.linspace(0, 1, 100)[:-1]) for curve in path]).T
+    area = abs(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))) / 2
+    assert area == pytest.approx(np.pi / 2 * (1 + pole @ eye), rel=1e-3)
+
+
 # ---- tiles ----------------------------------------------------------------------------------------------------------
 
 
@@ -367,6 +380,23 @@ def test_svg_is_xml_with_true_arcs_of_the_right_circle():
     # Counterclockwise in the plane is sweep flag 0 on a page whose second axis goes down.
     assert re.fullmatch(r"M0 2a1 1 0 0 0 2 0", data[0])
     assert data[1].count("a1 1 0 0 0") == 2
+
+
+@pytest.mark.parametrize("turn", [1.0, -1.0, 4.0, -4.0])
+def test_arcs_in_svg_run_through_the_middle_of_the_curve(turn):
+    """Read as the standard says: of the two circles through the ends the flags choose one, and one of its arcs."""
+    curve = Curve(np.array([(0.3, 0.1), (2.0, 1.0)]), turn)
+    root = ElementTree.fromstring(svg_text(Picture((Shape([[curve]], stroke="#000000"),), (-9.0, -9.0, 9.0, 9.0))))
+    data = root.find("{http://www.w3.org/2000/svg}path").get("d")
+    x, y, radius, _, _, large, sweep, dx, dy = map(float, re.findall(r"-?\d*\.?\d+", data))
+    half, chord = np.array([dx, dy]) / 2, np.hypot(dx, dy)
+    # On the page, whose second axis goes down, sweep 1 turns clockwise as seen, from the first axis to the second.
+    offset = np.sqrt(max(radius**2 - chord**2 / 4, 0)) * np.array([-dy, dx]) / chord
+    centre = half + (offset if large != sweep else -offset)
+    away = (half - centre) / np.linalg.norm(half - centre) if large == 0 else (centre - half) / np.linalg.norm(offset)
+    middle = np.array([x, y]) + centre + radius * away
+    wanted = curve.at([0.5])[0]
+    assert middle - 9.0 == pytest.approx(wanted * [1, -1], abs=0.03)
 
 
 @pytest.mark.parametrize("text", ["abABcdCD", "aabb", "aa"])

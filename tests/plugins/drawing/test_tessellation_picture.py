@@ -14,6 +14,7 @@ from orbiframe_drawing.tessellation_picture import tessellation_picture
 
 from orbiframe import Config, Polyhedron, Registry, Word, fit, read
 from orbiframe.delaunay import poisson_disc, polygon_triangulation
+from orbiframe.meshes.orientation import reversed_faces
 from orbiframe.words.word import text_of
 
 DATASETS = Path(__file__).parents[3] / "datasets"
@@ -147,6 +148,14 @@ def test_faces_towards_the_light_are_brighter():
         return int(colours[int(row), int(column), 0])
 
     assert brightness(np.array([0, 0, 0.5])) > brightness(np.array([0, -0.5, 0])) + 20
+
+
+@pytest.mark.parametrize("smooth", [False, True])
+def test_a_face_is_lit_the_same_from_both_sides(smooth):
+    inward = reversed_faces(CUBE, np.ones(CUBE.face_count, dtype=bool))
+    images = [Solid3D(one, 300.0, smooth=smooth).image().colours for one in (CUBE, inward)]
+    assert len(np.unique(images[0].reshape(-1, 4), axis=0)) > 3
+    np.testing.assert_array_equal(*images)
 
 
 def test_the_surface_stands_beside_its_tessellation(plate):

@@ -160,3 +160,18 @@ def test_a_vertex_of_a_thousand_neighbours():
     sums = np.bincount(wheel.tail, weights=packing.angles)
     assert np.allclose(sums, 2 * np.pi, rtol=0, atol=1e-11)
     assert packing.steps <= 25
+
+
+@pytest.mark.parametrize("parts", ["T", "TT", "PPP"])
+def test_a_packing_that_stops_early_is_refused(parts, monkeypatch):
+    """Newton's method squares the error: a step or two before the end it is small, and not small enough."""
+    mesh = shuffled(connected_sum(parts), 10, np.random.default_rng(0))
+    curvature = curvature_of(mesh)
+    errors = []
+    for steps in range(1, packed(mesh, curvature).steps - 1):
+        monkeypatch.setattr(module, "_STEPS", steps)
+        with pytest.raises(MapError, match="stopped at an angle error of") as refusal:
+            packed(mesh, curvature)
+        errors.append(float(str(refusal.value).split("angle error of ")[1].split(",")[0]))
+    assert errors[0] > errors[-1]
+    assert errors[-1] < 5e-3

@@ -273,3 +273,32 @@ def test_the_map_of_a_finer_mesh_is_nearly_conformal(name, limit):
     mesh = dataset(name, 3)
     result = harmonic(mesh, geometry(int(np.sign(surface_type(mesh).euler_characteristic))))
     assert np.median(result.angle_distortion) < limit
+
+
+@pytest.mark.parametrize(
+    ("name", "stretch", "better"),
+    [
+        ("plate_genus2_coarse", 1, "circle packing"),
+        ("plate_genus2_coarse", 8, "vertex scaling"),
+        ("three_crosscaps", 1, "vertex scaling"),
+    ],
+)
+def test_auto_takes_the_metric_whose_map_distorts_angles_less(name, stretch, better):
+    mesh = dataset(name)
+    mesh = mesh.with_vertices(mesh.vertices * [stretch, 1, 1])
+    made = {metric: harmonic(mesh, geometry(-1), metric=metric) for metric in ("vertex-scaling", "circle-packing")}
+    least = min(made, key=lambda metric: float(np.median(made[metric].angle_distortion)))
+    found = harmonic(mesh, geometry(-1))
+    assert least == better.replace(" ", "-")
+    assert found.group == f"mesh, by {better}"
+    np.testing.assert_array_equal(found.points, made[least].points)
+
+
+@pytest.mark.parametrize("name", ["plate_genus2_coarse", "torus"])
+def test_rounds_of_even_areas_end_before_a_fold(name):
+    """Areas in space that differ by 17 powers of ten: rounding folds the map of some round."""
+    mesh = dataset(name)
+    mesh = mesh.with_vertices(mesh.vertices * np.exp(20 * mesh.vertices[:, :1] / np.ptp(mesh.vertices)))
+    result = harmonic(mesh, geometry(int(np.sign(surface_type(mesh).euler_characteristic))), even_areas=12)
+    assert result.not_positive == 0
+    assert 1 <= int(result.weights.split(", ")[1].split()[0]) < 12
