@@ -34,7 +34,8 @@ def _lines(report: Mapping[str, Any], exact: int | None) -> Iterator[tuple[str, 
     cut = report["triangles"]
     if cut["diagonals"]:
         faces = _counted(cut["faces_cut"], "face", "faces")
-        yield "triangles", f"{_counted(cut['diagonals'], 'diagonal', 'diagonals')} in {faces}: {cut['rule']}"
+        points = f", {_counted(cut['points'], 'of them with a point', 'of them with points')}" if cut["points"] else ""
+        yield "triangles", f"{_counted(cut['diagonals'], 'diagonal', 'diagonals')} in {faces}{points}: {cut['rule']}"
     yield "geometry", str(report["geometry"])
     patches = _counted(group["patches"], "patch", "patches")
     yield "group", f"{group['source']}, {patches}, relation defect {group['relation_defect']:.1e}"
