@@ -60,7 +60,7 @@ def measured(method: str, shape: Shape, mesh: Polyhedron, tile: Path | None) -> 
         return Result(*said, seconds=seconds, reason="a coordinate is not finite", day=today())
     if tile:
         pictures.tile(skin.vertices, skin.triangles, tile, pictures.view_of(mesh))
-    found = measures.errors(skin, mesh, shape.truth)
+    found = measures.errors(skin, shape.finer() if shape.finer else mesh, shape.truth)
     curvature = None if np.isnan(found.curvature) else found.curvature
     crossing = None if found.crossing < 0 else found.crossing
     numbers = (float(found.rms), float(found.max), float(found.normals), curvature, crossing)
