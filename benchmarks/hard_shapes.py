@@ -25,6 +25,7 @@ from orbiframe.errors import OrbiframeError
 from orbiframe.fitting import pipeline
 from orbiframe.meshes.bisection import bisected, edge_length_for
 from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe.meshes.flat_flips import flat_flips
 from orbiframe.meshes.subdivision import refine
 from orbiframe.meshes.surface_type import surface_type
 from orbiframe.triangulations.lost_digits import crowding_of
@@ -42,10 +43,10 @@ def shapes() -> Iterator[tuple[str, Callable[[], Polyhedron]]]:
     for count in range(1, 21):
         yield f"{count} crosscaps, random vertices", lambda count=count: hard.crosscaps(count, 3)
     two = hard.plate_cells(1, 2)
-    for ratio in (5, 10, 20, 30, 35, 40):
+    for ratio in (5, 10, 20, 30, 35, 40, 60, 80):
         yield f"genus 2, finger of length {ratio} radii", lambda r=ratio: hard.with_finger(two, (0, 0, 0), r)
     one = hard.plate_cells(1, 1)
-    for ratio in (10, 30, 40):
+    for ratio in (10, 20, 30, 40, 60, 80):
         yield f"torus, finger of length {ratio} radii", lambda r=ratio: hard.with_finger(one, (0, 0, 0), r)
         yield f"sphere, finger of length {ratio} radii", lambda r=ratio: hard.with_finger(_slab(), (0, 0, 0), r)
     for kind, make in _bases().items():
@@ -86,13 +87,14 @@ def _quartered_fan(word: str) -> Polyhedron:
 
 def refined(mesh: Polyhedron) -> Polyhedron:
     """The mesh refined as for a fit by few functions."""
-    return bisected(mesh, edge_length_for(mesh, 3000), True).polyhedron
+    flips = flat_flips(mesh)
+    return bisected(mesh, edge_length_for(flips.after, 3000), True, flips).polyhedron
 
 
 def mapped(mesh: Polyhedron) -> Triangulation:
     """The map of a mesh by the component that a fit would take."""
-    name = pipeline.GEOMETRY[int(np.sign(surface_type(mesh).euler_characteristic))]
-    return REGISTRY.load("parametrizer", pipeline.PARAMETRIZER[name])(mesh, REGISTRY.load("geometry", name)(), None)
+    geometry = REGISTRY.geometry(surface_type(mesh).euler_characteristic)
+    return REGISTRY.load("parametrizer", pipeline.PARAMETRIZER[geometry.name])(mesh, geometry, None)
 
 
 def row(mesh: Polyhedron, plain: bool) -> str:

@@ -7,6 +7,7 @@ from .errors import (
     FormatError as FormatError,
     GeometryError as GeometryError,
     MapError as MapError,
+    Notice as Notice,
     OrbiframeError as OrbiframeError,
     PluginError as PluginError,
     TopologyError as TopologyError,

@@ -35,3 +35,7 @@ class MapError(OrbiframeError):
 
 class FitError(OrbiframeError):
     """A fit that cannot be computed."""
+
+
+class Notice(UserWarning):
+    """What was done to the content of a file without loss, such as a change of units: said, and never an error."""

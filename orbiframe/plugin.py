@@ -56,3 +56,13 @@ def orbiframe_components() -> Iterable[Component]:  # type: ignore[empty-body]
 @hookspec
 def orbiframe_stage_done(stage: str, result: object, seconds: float) -> None:
     """Called after each stage of a fit with its result and the seconds that it took."""
+
+
+@hookspec
+def orbiframe_warm_up() -> Iterable[str]:  # type: ignore[empty-body]
+    """Commands that together use all compiled code of a plugin, each as it follows `orbiframe`; for `warm-up`.
+
+    They run in a folder where these closed meshes lie: `prism.off`, `torus.off`, `double_torus.off`,
+    `projective_plane.off` and `klein_bottle.off`, small ones, and `large.off`, a torus of 351,122 triangles. What they
+    write there is thrown away. An example: "fit torus.off -o torus.ply --basis my-basis --quiet".
+    """

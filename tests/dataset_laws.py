@@ -11,7 +11,7 @@ from orbiframe import Triangulation
 from orbiframe.components.geometry_names import geometry_name
 from orbiframe.components.registry import Registry
 from orbiframe.files import gate
-from orbiframe.fitting.pipeline import PARAMETRIZER
+from orbiframe.fitting.mapping import PARAMETRIZER
 from orbiframe.meshes.defects import require_closed_surface
 from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.meshes.orientation import oriented

@@ -87,3 +87,48 @@ def random_polyhedra(most_steps: int = 12) -> st.SearchStrategy[Polyhedron]:
 
 def random_triangle_meshes(most_steps: int = 12) -> st.SearchStrategy[Polyhedron]:
     return random_polyhedra(most_steps).map(triangulated)
+
+
+def bent(name: str, seed: int, steps: int) -> Polyhedron:
+    """A reference polyhedron with vertices of valence 2 that are far off their edges, and some diagonals."""
+    rng = np.random.default_rng(seed)
+    start = reference_polyhedra()[name]
+    vertices, faces = start.vertices.tolist(), face_lists(start)
+    for _ in range(steps):
+        faces, ends = with_split_edge(faces, len(vertices), rng)
+        middle = rng.dirichlet([4.0, 4.0]) @ np.array(vertices)[ends]
+        vertices.append((middle + rng.normal(scale=0.3, size=3)).tolist())
+        faces = with_diagonal(faces, rng) if rng.random() < 0.3 else faces
+    return Polyhedron.from_faces(vertices, faces)
+
+
+def with_pocket(mesh: Polyhedron, halfedge: int) -> Polyhedron:
+    """An edge doubled, and two triangles between the two edges, glued along their other sides: valence 2."""
+    a, b, twin = int(mesh.tail[halfedge]), int(mesh.head[halfedge]), int(mesh.twin[halfedge])
+    v, first = len(mesh.vertices), len(mesh.tail)
+    glued = np.concatenate([mesh.twin, [halfedge, first + 5, first + 4, twin, first + 2, first + 1]])
+    glued[[halfedge, twin]] = first, first + 3
+    same = np.concatenate([mesh.same, [False, False, False, mesh.same[halfedge], False, False]])
+    same[halfedge] = False
+    return Polyhedron(
+        np.concatenate([mesh.vertices, [(mesh.vertices[a] + mesh.vertices[b]) / 2 + 0.1]]),
+        np.concatenate([mesh.offsets, [first + 3, first + 6]]),
+        np.concatenate([mesh.tail, [b, a, v, a, b, v]]),
+        glued,
+        same,
+    )
+
+
+def bent_polyhedra(most_steps: int = 12) -> st.SearchStrategy[Polyhedron]:
+    return st.builds(bent, st.sampled_from(NAMES), st.integers(0, 2**32 - 1), st.integers(0, most_steps))
+
+
+def polyhedra_with_doubled_edges() -> st.SearchStrategy[Polyhedron]:
+    edges = st.lists(st.integers(0, 2**32 - 1), min_size=1, max_size=4)
+
+    def grown_pockets(mesh: Polyhedron, places: list[int]) -> Polyhedron:
+        for place in places:
+            mesh = with_pocket(mesh, place % len(mesh.tail))
+        return mesh
+
+    return st.builds(grown_pockets, bent_polyhedra(4), edges)

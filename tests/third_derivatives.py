@@ -33,7 +33,7 @@ def _hessian(basis: DifferentiableBasis, points: Points, velocity: np.ndarray, t
     y = geometry.exp(points.x, t * velocity)
     forwards = -geometry.log(y, points.x) / t
     frame = geometry.frame(y)
-    c, s = (geometry.inner(forwards, frame[:, :, k])[:, None] for k in (0, 1))
+    c, s = (geometry.inner(y, forwards, frame[:, :, k])[:, None] for k in (0, 1))
     h11, h12, h22 = (m.toarray() for m in basis.jet_matrices(Points(points.patch, y), 2)[3:])
     return np.stack(
         [

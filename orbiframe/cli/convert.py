@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections import Counter
 from pathlib import Path
 from typing import Any
 
 from orbiframe.cli.losses import losses
 from orbiframe.cli.repairs import add_repairs, repaired
+from orbiframe.cli.speech import say
 from orbiframe.cli.streams import STREAM, choice, read, write
 from orbiframe.components.registry import Registry
 from orbiframe.errors import FormatError, OrbiframeError, UsageError
-from orbiframe.files.destination import require_destination, require_other_file
+from orbiframe.files.destination import require_destination
+from orbiframe.files.outputs import require_apart
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -65,7 +66,7 @@ def _targets(args: argparse.Namespace, registry: Registry) -> list[Path]:
     for target in targets:
         require_destination(target, registry, choice("writer", args.output_format, registry).component)
         for path in args.files:
-            require_other_file(target, path)
+            require_apart({"the output": target}, {"the input": path})
     return targets
 
 
@@ -82,7 +83,7 @@ def _attempted(source: Path, target: Path, args: argparse.Namespace, options: An
         _convert(source, target, args, options, registry, title=f"{source}: ")
     except (OrbiframeError, OSError, MemoryError) as error:
         said = str(error) or "not enough memory"
-        print(f"orbiframe: {said if str(source) in said else f'{source}: {said}'}", file=sys.stderr)
+        say(said if str(source) in said else f"{source}: {said}")
         return False
     return True
 
@@ -93,7 +94,7 @@ def _convert(
     chosen = choice("writer", args.output_format, registry)
     if target != STREAM:
         require_destination(target, registry, chosen.component)
-        require_other_file(target, source)
+        require_apart({"the output": target}, {"the input": source})
     with losses(strict=args.strict):
         polyhedron = read(
             source, registry, args.input_format, options=options["reader"], degenerate=args.drop_degenerate

@@ -11,7 +11,8 @@ from orbiframe.cli.progress import Progress
 from orbiframe.cli.repairs import add_repairs, repaired, repairs_asked
 from orbiframe.cli.report import json_text, summary, write_report
 from orbiframe.components.registry import Registry
-from orbiframe.files.destination import require_destination, require_folder, require_other_file
+from orbiframe.files.destination import require_destination
+from orbiframe.files.outputs import require_apart, require_output
 
 if TYPE_CHECKING:
     from orbiframe.fitting.config import Config
@@ -29,10 +30,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--group", metavar="NAME", help="a named group, such as regular-polygon; else that of the mesh (group.method)")
     add("--map", metavar="NAME", help="the map to X/H, such as equivariant (map.method)")
     add("--basis", metavar="NAME", help="the functions, such as ps6 or gaussian (basis.name)")
+    add("--data", metavar="MEANS", help="what the mesh means: smooth, semi-smooth or facets; default auto (data.means)")
+    add("--fast", action="store_true", help="one linear fit on one map (fitter.name=least-squares, data.lift=false)")
     add("--shape", metavar="NAME", help="makes faces regular in X/H, such as regular-faces (shape.method)")
-    size = parser.add_mutually_exclusive_group().add_argument
-    size("--size", metavar="N", type=int, help="number of basis functions (basis.size)")
-    size("--tolerance", metavar="T", type=float, help="largest rms error, of the box's diagonal (output.tolerance)")
+    add(
+        "--size",
+        metavar="N",
+        type=int,
+        help="number of functions; default as the shape needs (basis.size)",
+    )
+    add("--tolerance", metavar="T", type=float, help="largest rms error, of the box's diagonal (output.tolerance)")
+    add("--max-error", metavar="T", type=float, help="largest error anywhere, of the box's diagonal (output.max_error)")
     add("--refine", metavar="K", type=int, help="K*K output triangles for each input triangle (output.refine)")
     add("--report", metavar="FILE.json", type=Path, help="write the report")
     add("--save", metavar="FILE", type=Path, help="write the surface itself, to be evaluated anywhere")
@@ -99,9 +107,12 @@ def overrides(args: argparse.Namespace) -> list[str]:
         "shape.method": args.shape,
         "basis.size": args.size,
         "output.tolerance": args.tolerance,
+        "output.max_error": args.max_error,
+        "data.means": args.data,
         "output.refine": args.refine,
     }
-    return [*args.set, *(f"{key}={value}" for key, value in named.items() if value is not None)]
+    fast = ["fitter.name=least-squares", "data.lift=false"] if args.fast else []
+    return [*fast, *args.set, *(f"{key}={value}" for key, value in named.items() if value is not None)]
 
 
 def _exact(args: argparse.Namespace, config: Config, registry: Registry) -> bool:
@@ -114,9 +125,10 @@ def _exact(args: argparse.Namespace, config: Config, registry: Registry) -> bool
 
 
 def _require_destinations(args: argparse.Namespace, config: Config, registry: Registry) -> None:
+    outputs = {"-o": args.output, "--report": args.report, "--save": args.save}
+    plugins = {f"the plugin {path}": path for path in config.plugins}
+    require_apart(outputs, {"the input": args.mesh, "--config": args.config, **plugins})
     require_destination(args.output, registry, kind="exporter" if _exact(args, config, registry) else "writer")
-    require_other_file(args.output, args.mesh)
     for path in (args.report, args.save):
         if path is not None:
-            require_folder(path)
-            require_other_file(path, args.mesh)
+            require_output(path)

@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from orbiframe.cli.description import description, lines
-from orbiframe.cli.report import plain, write_text
+from orbiframe.cli.report import plain
 from orbiframe.cli.streams import read
 from orbiframe.components.registry import Registry
+from orbiframe.components.shown_text import shown
 from orbiframe.errors import UsageError
-from orbiframe.files.destination import require_folder, require_other_file
+from orbiframe.files.outputs import require_apart, require_output, write_text
 from orbiframe.plugin import DEFAULT_MARKER
 
 if TYPE_CHECKING:
@@ -31,8 +32,8 @@ def show_loops(args: argparse.Namespace, registry: Registry) -> int:
     path, out = _one_file(args.files), args.loops
     if out.suffix.lower() not in _TEXTS:
         raise UsageError(f"{out}: loops are written as .json or .obj; give OUT one of these suffixes")
-    require_folder(out)
-    require_other_file(out, path)
+    require_output(out)
+    require_apart({"--loops": out}, {"FILE": path})
     mesh = read(path, registry, args.input_format, degenerate=True)
     found = marked(mesh, registry)
     write_text(out, _TEXTS[out.suffix.lower()]({"file": str(path), **found}))
@@ -101,7 +102,7 @@ def _json(found: dict[str, Any]) -> str:
 
 def _obj(found: dict[str, Any]) -> str:
     """Every loop as an object with vertices and one polyline, which comes back to the first of them."""
-    text, first = [f"# loops of {found['file']}, word {found['word']}".replace("\n", " ")], 1
+    text, first = [f"# loops of {shown(found['file'])}, word {found['word']}"], 1
     for loop in found["loops"]:
         points = loop["points"][:-1]
         text.append(f"o loop_{loop['letter']}")

@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from orbiframe.errors import FormatError
+from orbiframe.errors import FormatError, Notice
 
 
 @contextmanager
@@ -15,6 +15,7 @@ def losses(*, strict: bool) -> Iterator[None]:
     with warnings.catch_warnings():
         if strict:
             warnings.simplefilter("error", UserWarning)
+            warnings.simplefilter("always", Notice)
         try:
             yield
         except FormatError as error:

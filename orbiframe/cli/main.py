@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from importlib.metadata import version
 
 from orbiframe.cli import plugin as commands
+from orbiframe.cli.progress import compilation_told
+from orbiframe.cli.speech import any_letter, fill_closed_streams, say, silence
 from orbiframe.components.registry import Registry
 from orbiframe.errors import OrbiframeError, UsageError
 
@@ -27,17 +29,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     arguments = sys.argv[1:] if argv is None else list(argv)
     _fix_threads()
-    with warnings.catch_warnings():
+    fill_closed_streams()
+    with warnings.catch_warnings(), any_letter():
         debug = "--debug" in arguments
         _show_warnings_of_users(debug)
         try:
-            return _run(arguments)
+            status = _run(arguments)
         except SystemExit as stop:
-            return stop.code if isinstance(stop.code, int) else 0
-        except BrokenPipeError:
-            return _close_quietly()
+            status = stop.code if isinstance(stop.code, int) else 0
         except (Exception, KeyboardInterrupt) as error:
-            return _report(error, debug)
+            status = 0 if isinstance(error, BrokenPipeError) else _report(error, debug)
+        return _flushed(status)
 
 
 def _fix_threads() -> None:
@@ -52,17 +54,28 @@ def _fix_threads() -> None:
 def _run(arguments: list[str]) -> int:
     registry = Registry.discover()
     registry.register("commands", commands)
+    args = parsed(arguments, registry)
+    with compilation_told(quiet=getattr(args, "quiet", False)):
+        status: int = args.run(args, registry)
+    return status
+
+
+def parsed(arguments: list[str], registry: Registry) -> argparse.Namespace:
+    """A command of a registry with its arguments; to be run as `args.run(args, registry)`.
+
+    Raises UsageError for an unknown command and SystemExit for wrong arguments.
+    """
     chosen = next((word for word in arguments if not word.startswith("-")), None)
     parser = _parser(registry, chosen)
     if chosen is not None:
         registry.component("command", chosen)
-    args = parser.parse_args(arguments)
-    if chosen is None:
-        parser.print_help()
-        return 0
-    status: int = args.run(args, registry)
-    sys.stdout.flush()
-    return status
+    parser.set_defaults(run=lambda *_: _print_help(parser))
+    return parser.parse_args(arguments)
+
+
+def _print_help(parser: argparse.ArgumentParser) -> int:
+    parser.print_help()
+    return 0
 
 
 def _parser(registry: Registry, chosen: str | None) -> argparse.ArgumentParser:
@@ -92,13 +105,15 @@ def _show_warnings_of_users(debug: bool) -> None:
     if not debug:
         warnings.simplefilter("ignore")
         warnings.filterwarnings("always", category=UserWarning)
-        warnings.showwarning = lambda message, *_, **__: print(f"orbiframe: warning: {message}", file=sys.stderr)
+        warnings.showwarning = lambda message, *_, **__: say(f"warning: {message}")
 
 
 def _report(error: BaseException, debug: bool) -> int:
     if debug:
         traceback.print_exception(error)
-    print(f"orbiframe: {_sentence(error)}", file=sys.stderr)
+    if isinstance(error, OSError) and error.filename is None:
+        return _lost(error)
+    say(_sentence(error))
     if isinstance(error, KeyboardInterrupt):
         return INTERRUPTED
     return 2 if isinstance(error, UsageError) else 1
@@ -114,10 +129,30 @@ def _sentence(error: BaseException) -> str:
     return f"internal error, {type(error).__name__}: {error}; run again with --debug for the traceback, and report it"
 
 
-def _close_quietly() -> int:
-    # The reader of our output has gone (as in `orbiframe plugins | head`); nothing more can or need be said.
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    return 0
+def _flushed(status: int) -> int:
+    """The status, once all is said; another one if the standard output, full for example, does not take it.
+
+    A reader that has gone (as in `orbiframe plugins | head`) is no error: nothing more can or need be said.
+    """
+    try:
+        _flush()
+    except BrokenPipeError:
+        silence(sys.stdout)
+    except OSError as error:
+        return status or _lost(error)
+    return status
+
+
+def _lost(error: OSError) -> int:
+    """Say that the standard output takes nothing any more; errors of files have their names."""
+    silence(sys.stdout)
+    say(f"the standard output cannot be written: {error.strerror}; files that were asked for are made")
+    return 1
+
+
+def _flush() -> None:
+    if sys.stdout is not None:
+        sys.stdout.flush()
 
 
 if __name__ == "__main__":

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
+
+from orbiframe.cli.speech import say
 
 if TYPE_CHECKING:
     from orbiframe.meshes.polyhedron import Polyhedron
@@ -40,7 +41,7 @@ def repaired(polyhedron: Polyhedron, args: argparse.Namespace, *, title: str = "
         function: Callable[..., Repair] = getattr(repair, name)
         polyhedron, said = function(polyhedron, *arguments)
         if not quiet:
-            print(f"orbiframe: {title}{name.replace('_', '-')}: {said}", file=sys.stderr)
+            say(f"{title}{name.replace('_', '-')}: {said}")
     return polyhedron
 
 

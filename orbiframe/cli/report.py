@@ -4,27 +4,18 @@ from __future__ import annotations
 
 import json
 import math
-import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-WORTH_A_WARNING = 6.0
+WORTH_A_WARNING = 13.0  # up to there the error of a fit does not depend on crowding
 
 
 def write_report(path: Path, report: Mapping[str, Any]) -> None:
     """Write a report as JSON; the file appears complete or not at all."""
+    from orbiframe.files.outputs import write_text
+
     write_text(path, json_text(report) + "\n")
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a text; the file appears complete or not at all."""
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        unfinished.write_text(text, encoding="utf-8")
-        unfinished.replace(path)
-    finally:
-        unfinished.unlink(missing_ok=True)
 
 
 def json_text(report: Mapping[str, Any]) -> str:
@@ -57,12 +48,23 @@ def _lines(report: Mapping[str, Any], exact: int | None) -> Iterator[tuple[str, 
     faces = report["faces"]
     if faces["corners"] > 3:
         yield "faces", _shapes(faces) + (f" (before: {_shapes(faces['before'])})" if faces["before"] else "")
-    yield "fit", f"{fit['basis']}, {fit['size']} functions, {fit['samples']} samples"
+    yield "data", f"{report['data']['means']}: {report['data']['reason']}"
+    yield "fit", f"{fit['basis']}, {fit['size']} functions, {fit['samples']} samples, {fit['fitter']}"
     yield "error", f"rms {fit['rms']:.2e}, max {fit['max']:.2e} of the bounding-box diagonal"
+    yield from _distances(report["distance"])
+    yield from (("warning", note) for note in report["notes"])
     mesh = f"{out['vertices']} vertices, {out['faces']} faces"
     yield "output", mesh if exact is None else f"exact rational patches, {exact / 1e6:.2g} MB"
     stages = ", ".join(f"{stage} {seconds:.1f}" for stage, seconds in report["seconds"].items())
     yield "seconds", f"{sum(report['seconds'].values()):.1f} ({stages})"
+
+
+def _distances(distance: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Distances both ways and at the vertices, with the place where the mesh is missed most."""
+    parts = ("mesh_to_surface", "to the surface"), ("surface_to_mesh", "back"), ("vertices_to_surface", "vertices")
+    words = (f"{name} {distance[key]['rms']:.2e} (max {distance[key]['max']:.2e})" for key, name in parts)
+    place = ", ".join(f"{x:.4g}" for x in distance["mesh_to_surface"]["place"])
+    yield "distance", f"{', '.join(words)}; farthest at ({place})"
 
 
 def _crowding(crowding: Mapping[str, float]) -> Iterator[tuple[str, str]]:

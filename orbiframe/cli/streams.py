@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import sys
-import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TextIO
 
 from orbiframe.components.registry import Registry
 from orbiframe.errors import FormatError, PluginError, UsageError
@@ -86,22 +84,20 @@ def write(
 
     format: a name of a writer or a suffix. What goes to the standard output is made whole first.
     """
-    from orbiframe.files import gate, places
+    from orbiframe.files import gate, outputs
 
     chosen = choice("writer", format, registry)
     if path != STREAM and chosen.suffix in (None, path.suffix.lower()):
         gate.write(path, polyhedron, registry, format=chosen.component, options=options)
         return
     _require_named(chosen, "output", "-o")
-    # Through a link the file behind it is written, as by any other program.
-    target = STREAM if path == STREAM else Path(os.path.realpath(path))
     if path != STREAM:
-        places.require_writable(target)
+        outputs.require_output(path)
     name = "stdout" if path == STREAM else str(path)
-    with _staged(f"{Path(name).stem}{chosen.suffix}", name, None if path == STREAM else target.parent) as place:
+    with _staged(f"{Path(name).stem}{chosen.suffix}", name) as place:
         gate.write(place, polyhedron, registry, format=chosen.component, options=options)
         _require_one_file(place, name)
-        _send(place, target)
+        _send(place, path)
 
 
 def _require_named(chosen: Choice, noun: str, option: str) -> None:
@@ -112,31 +108,50 @@ def _require_named(chosen: Choice, noun: str, option: str) -> None:
 
 
 @contextmanager
-def _staged(file: str, name: str, beside: Path | None = None) -> Iterator[Path]:
+def _staged(file: str, name: str) -> Iterator[Path]:
     """A place for a file in a folder of its own; errors name what the user knows instead of it."""
-    with tempfile.TemporaryDirectory(dir=beside, prefix=".orbiframe-") as folder:
-        place = Path(folder) / file
+    from orbiframe.files.temporary_folder import temporary_folder
+
+    with temporary_folder() as folder:
+        place = folder / file
         try:
             yield place
         except (FormatError, PluginError) as error:
             raise type(error)(str(error).replace(str(place), name)) from error.__cause__
 
 
+def _require_open(stream: TextIO | None, noun: str) -> None:
+    if stream is None:
+        raise FormatError(f"the standard {noun} is closed; name a file, or connect it")
+
+
 def _receive(place: Path, limit: int) -> None:
+    _require_open(sys.stdin, "input")
     with place.open("wb") as file:
-        while block := sys.stdin.buffer.read(_BLOCK):
+        while block := _block():
             file.write(block)
             if file.tell() > limit:
                 raise FormatError(f"{place}: there are more bytes than the limit of {limit}")
 
 
+def _block() -> bytes:
+    try:
+        return sys.stdin.buffer.read(_BLOCK)
+    except OSError as error:
+        raise FormatError(f"the standard input cannot be read: {error.strerror}; connect it to a mesh") from error
+
+
 def _send(place: Path, path: Path) -> None:
-    if path != STREAM:
-        place.replace(path)
+    from orbiframe.files.outputs import output
+
+    if path == STREAM:
+        _require_open(sys.stdout, "output")
+        with place.open("rb") as file:
+            shutil.copyfileobj(file, sys.stdout.buffer)
+        sys.stdout.buffer.flush()
         return
-    with place.open("rb") as file:
-        shutil.copyfileobj(file, sys.stdout.buffer)
-    sys.stdout.buffer.flush()
+    with output(path) as made:
+        shutil.copyfile(place, made)
 
 
 def _require_one_file(place: Path, name: str) -> None:

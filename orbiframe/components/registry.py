@@ -111,6 +111,10 @@ class Registry:
         """Tell every plugin that listens (hook `orbiframe_stage_done`) that a stage of a fit has ended."""
         self._manager.hook.orbiframe_stage_done(stage=stage, result=result, seconds=seconds)
 
+    def warm_up_commands(self) -> list[str]:
+        """The commands, without `orbiframe` before them, that use all compiled code (hook `orbiframe_warm_up`)."""
+        return [line for lines in reversed(self._manager.hook.orbiframe_warm_up()) for line in lines]
+
     # ---- filling --------------------------------------------------------------------------------------------------
 
     def _admit(self, name: str, load: Callable[[], object]) -> None:

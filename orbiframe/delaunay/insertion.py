@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from orbiframe.compiled.decorator import compiled
 from orbiframe.compiled.matrices import copy, multiply
 from orbiframe.delaunay.lawson_flips import chord, legalise_star, push, versine
-from orbiframe.delaunay.point_walk import LONGEST_CHAIN, Located, by_place, walk
+from orbiframe.delaunay.point_walk import LONGEST_CHAIN, Located, by_place, follow
 from orbiframe.delaunay.triangle_arrays import TriangleArrays, corner, move, recentre, split
 from orbiframe.errors import MapError
 
@@ -54,7 +54,7 @@ def _insert(triangles, faces, vertices, order, home, x, near, vertex):  # type: 
             copy(triangles.route[last], route)
         chain += 1
         y[0], y[1], y[2] = move(k, route, x[i])
-        face, seed = walk(triangles, face, y, route, seed)
+        face, seed = follow(triangles, face, y, route, seed)
         if face < 0:
             return vertices, i
         if recentre(triangles, face):

@@ -30,15 +30,15 @@ class Located(NamedTuple):
     x: Floats
 
 
-def locate(triangulation: GeodesicTriangulation, points: Points) -> Located:
+def find(triangulation: GeodesicTriangulation, points: Points) -> Located:
     """The triangles in which points of X/H lie; a point on an edge or vertex lies in any of its triangles.
 
     Raises GeometryError for a point that is not finite or too far from its patch to be followed.
     """
-    return locate_in(arrays_of(triangulation), triangulation, points)
+    return find_in(arrays_of(triangulation), triangulation, points)
 
 
-def locate_in(triangles: TriangleArrays, triangulation: GeodesicTriangulation, points: Points) -> Located:
+def find_in(triangles: TriangleArrays, triangulation: GeodesicTriangulation, points: Points) -> Located:
     """The same for triangles that come from a triangulation and may have been flipped since."""
     face, route = _entrances(triangles, triangulation)
     x = np.ascontiguousarray(points.x, dtype=np.float64)
@@ -79,7 +79,7 @@ def _entrances(triangles: TriangleArrays, triangulation: GeodesicTriangulation) 
 
 
 @compiled(arrays=False)
-def walk(triangles, face, x, route, seed):  # type: ignore[no-untyped-def]
+def follow(triangles, face, x, route, seed):  # type: ignore[no-untyped-def]
     """Follow a point x from a triangle to the one that it lies in; x and route change with the frames.
 
     Crosses any edge that the point lies beyond, but never straight back: on a Delaunay triangulation that ends, on any
@@ -120,7 +120,7 @@ def _locate(triangles, order, patch, x, first, first_route, found_face, found_x)
             copy(first_route[last], route)
         chain += 1
         y[0], y[1], y[2] = move(triangles.curvature, route, x[i])
-        face, seed = walk(triangles, face, y, route, seed)
+        face, seed = follow(triangles, face, y, route, seed)
         if face < 0:
             return i
         found_face[i] = face

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from orbiframe.delaunay.fresh_frames import centred, polished
 from orbiframe.delaunay.insertion import insert
 from orbiframe.delaunay.lawson_flips import legalise, push_all
-from orbiframe.delaunay.point_walk import locate_in
+from orbiframe.delaunay.point_walk import find_in
 from orbiframe.delaunay.removal import remove
 from orbiframe.delaunay.triangle_arrays import TriangleArrays, arrays_of
 from orbiframe.errors import MapError
@@ -46,7 +46,7 @@ def delaunay(triangulation: GeodesicTriangulation, sites: Points) -> SiteTriangu
         raise MapError("no sites are given; a triangulation of a closed surface has at least one vertex")
     start = _fine(triangulation)
     triangles = _flipped(start, len(sites.patch))
-    located = locate_in(triangles, start, sites)
+    located = find_in(triangles, start, sites)
     vertex, count = insert(triangles, start.face_count, start.vertex_count, located, start.orbifold.area)
     _require_distinct(vertex)
     remove(triangles, _others(count, vertex))

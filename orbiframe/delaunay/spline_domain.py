@@ -13,24 +13,31 @@ from orbiframe.errors import FitError
 from orbiframe.meshes.edge_paths import edge_graph, farthest_points, outermost_vertex
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
+from orbiframe.triangulations.local_girth import site_lengths
 from orbiframe.triangulations.triangulation import Triangulation
 
+# How much of the density of sites follows the girth: triangles of one star stay of one size where the map changes fast.
+_GRADING = 0.6
 # The longest edge on the sphere: the ends of an edge of length pi have no geodesic between them.
 _LONGEST = 0.9 * np.pi
 
 
-def spline_domain(triangulation: Triangulation, vertices: int, *, smoothing: int = 3) -> GeodesicTriangulation:
-    """The Delaunay triangulation of X/H with `vertices` sites, spread evenly over the surface in space.
+def spline_domain(
+    triangulation: Triangulation, vertices: int, *, smoothing: int = 3, grading: float = _GRADING
+) -> GeodesicTriangulation:
+    """The Delaunay triangulation of X/H with `vertices` sites, graded over the surface in space.
 
-    The sites are vertices of the mesh at first, farthest points by the lengths of edges in space from the vertex
-    farthest from the centroid on. Then as many steps of Lloyd as `smoothing` says make the triangles rounder; with the
-    square of the density of the sites as weight, they keep it. The triangles are Delaunay in X and positive, down to
-    one vertex (on the sphere and the projective plane down to what its geodesic triangles need, with a few more sites
-    where an edge would be almost half of a great circle). Raises FitError if the mesh has fewer distinct vertices;
-    MapError if the sphere has too few sites or the map has folds.
+    The sites are vertices of the mesh at first, farthest points by the lengths of edges in space, times the density
+    that the girth of the surface asks for (`site_density`), from the vertex farthest from the centroid on. Then as many
+    steps of Lloyd as `smoothing` says make the triangles rounder; with the square of the density of the sites as
+    weight, they keep it. The triangles are Delaunay in X and positive, down to one vertex (on the sphere and the
+    projective plane down to what its geodesic triangles need, with a few more sites where an edge would be almost half
+    of a great circle). Raises FitError if the mesh has fewer distinct vertices; MapError if the sphere has too few
+    sites or the map has folds.
     """
-    first = outermost_vertex(triangulation.polyhedron)
-    chosen = farthest_points(edge_graph(triangulation.polyhedron), vertices, first=first).chosen
+    mesh = triangulation.polyhedron
+    lengths = site_lengths(triangulation, grading)
+    chosen = farthest_points(edge_graph(mesh, lengths), vertices, first=outermost_vertex(mesh)).chosen
     if vertices < 1 or len(chosen) < vertices:
         raise FitError(
             f"{vertices} vertices are wanted for the splines, and the mesh has {len(chosen)} distinct ones; take at "
@@ -41,7 +48,7 @@ def spline_domain(triangulation: Triangulation, vertices: int, *, smoothing: int
     number[triangulation.polyhedron.triangles] = start.vertex
     found = delaunay_of_vertices(start, number[chosen]).triangulation
     if found.geometry.curvature > 0 and found.edge_lengths.max() > _LONGEST:
-        return spline_domain(triangulation, vertices + 1, smoothing=smoothing)
+        return spline_domain(triangulation, vertices + 1, smoothing=smoothing, grading=grading)
     return lloyd(found, smoothing, region_areas(found) ** -2.0) if smoothing else found
 
 

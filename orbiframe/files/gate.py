@@ -15,7 +15,8 @@ from orbiframe.plugin import Component
 
 if TYPE_CHECKING:
     from orbiframe.surfaces.surface import OrbifoldSurface
-from orbiframe.files.places import SIZE_LIMIT, _behind_links, _folder_beside, require_readable, require_writable
+from orbiframe.files.outputs import output, require_output
+from orbiframe.files.places import SIZE_LIMIT, require_readable
 from orbiframe.files.soundness import require_sound
 
 
@@ -73,7 +74,7 @@ def write(
     """
     path = Path(path)
     require_sound(polyhedron, path)
-    require_writable(_behind_links(path))
+    require_output(path)
     _write_whole(path, _component(path, registry, "writer", format, options), polyhedron)
 
 
@@ -84,7 +85,7 @@ def export(path: Path, surface: OrbifoldSurface, registry: Components) -> None:
     fails, FitError for a surface that has no exact patches.
     """
     path = Path(path)
-    require_writable(_behind_links(path))
+    require_output(path)
     _write_whole(path, _component(path, registry, "exporter", None, None), surface)
 
 
@@ -138,12 +139,8 @@ def _guarded(path: Path, doing: str, component: Callable[..., object], *argument
 
 
 def _write_whole(path: Path, writer: Callable[..., object], content: object) -> None:
-    """Have a file made in a folder beside its place and then moved there."""
-    target = _behind_links(path)
-    with _folder_beside(target) as folder:
-        made = Path(folder) / path.name
+    with output(path) as made:
         _guarded(path, "writing", writer, made, content)
-        _move(made, target)
 
 
 def _described(error: BaseException) -> str:
@@ -152,13 +149,3 @@ def _described(error: BaseException) -> str:
     if isinstance(error, MemoryError):
         return "it asks for more memory than there is; are the counts in the file right?"
     return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-
-
-def _move(made: Path, target: Path) -> None:
-    """Move what a writer made to its place, the file itself last."""
-    if not made.is_file() or made.stat().st_size == 0:
-        raise FormatError(f"{target}: the writer of this format made no file; choose another format")
-    for companion in sorted(made.parent.iterdir()):
-        if companion != made:
-            companion.replace(target.parent / companion.name)
-    made.replace(target)

@@ -6,12 +6,13 @@ import importlib
 import signal
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 import numpy as np
 
 from orbiframe.errors import FormatError, OrbiframeError, PluginError
+from orbiframe.files.confinement import confine
+from orbiframe.files.temporary_folder import temporary_folder
 from orbiframe.meshes.polyhedron import Polyhedron
 
 SECONDS = 60.0
@@ -19,6 +20,7 @@ SECONDS = 60.0
 MEMORY, FACTOR = 2**28, 64
 TABLES = ("vertices", "offsets", "tail", "normals", "colors", "face_colors")
 # Exit statuses of the child that say what its last words are.
+NAMES_ANOTHER = "the file names another one, which is not opened"
 STATUS = {FormatError: 65, PluginError: 69}
 
 
@@ -27,11 +29,11 @@ def confined_read(target: str, path: Path, *, seconds: float = SECONDS, memory: 
 
     seconds, memory: the most time and the most bytes of memory that the process may take for a small file; a larger one
     gets a second more for each megabyte and 64 bytes for each byte. Memory is counted from the import of the target's
-    module on, where the system can limit it. Raises FormatError if the process ends in any way but well; FormatError
-    and PluginError of the function are passed on.
+    module on, where the system can limit it. The process can open no other file, see `confinement.confine`. Raises
+    FormatError if the process ends in any way but well; FormatError and PluginError of the function are passed on.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        parcel = Path(folder) / "polyhedron.npz"
+    with temporary_folder() as folder:
+        parcel = folder / "polyhedron.npz"
         _run("read", target, path, parcel, *_limits(path, seconds, memory))
         return _unpacked(parcel)
 
@@ -40,8 +42,8 @@ def confined_write(
     target: str, path: Path, polyhedron: Polyhedron, *, seconds: float = SECONDS, memory: int = MEMORY
 ) -> None:
     """Call the function `target` with a path and a polyhedron in a process of its own; see `confined_read`."""
-    with tempfile.TemporaryDirectory() as folder:
-        parcel = Path(folder) / "polyhedron.npz"
+    with temporary_folder() as folder:
+        parcel = folder / "polyhedron.npz"
         _pack(parcel, polyhedron)
         _run("write", target, path, parcel, *_limits(parcel, seconds, memory))
 
@@ -94,6 +96,8 @@ def main(verb: str, target: str, path: str, parcel: str, memory: str) -> int:
     module, _, name = target.partition(":")
     function = getattr(importlib.import_module(module), name)
     _limit_memory(int(memory))
+    place, folders = Path(path), [Path(parcel).parent]
+    confine([place], folders if verb == "read" else [*folders, place.parent])
     try:
         if verb == "read":
             _pack(Path(parcel), function(Path(path)))
@@ -105,8 +109,11 @@ def main(verb: str, target: str, path: str, parcel: str, memory: str) -> int:
         return _said(f"{path}: the library asks for more memory than allowed; are the counts in the file right?")
     except SystemExit:
         return _said(f"{path}: the library for this format ended its process; the file is not what it expects")
-    except Exception as error:
-        return _said(f"{path}: the library for this format failed: {type(error).__name__}: {error}")
+    except PermissionError as error:
+        return _said(f"{path}: {error.args[0] if len(error.args) == 1 else NAMES_ANOTHER}")
+    except Exception:
+        # What a library says of its own errors, such as KeyError, helps nobody.
+        return _said(f"{path}: the library for this format cannot make sense of the file; is it damaged?")
     return 0
 
 

@@ -2,94 +2,258 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
-import os
-import zipfile
-import zlib
 from collections.abc import Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.components.geometry_names import geometry_name
 from orbiframe.components.options import checked_options
-from orbiframe.errors import FormatError
+from orbiframe.errors import FormatError, OrbiframeError
+from orbiframe.files.array_archive import ArrayArchive, Shape
 from orbiframe.files.gate import Components
+from orbiframe.files.outputs import output
 from orbiframe.files.places import require_readable
-from orbiframe.meshes.bisection import Bisection
-from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.orbifolds.atlas import Atlas
+from orbiframe.files.surface_laws import (
+    BrokenLaw,
+    require,
+    require_atlas,
+    require_map,
+    require_mesh,
+    require_refinement,
+)
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.triangulations.triangulation import Triangulation
 
 Arrays = Mapping[str, NDArray[Any]]
+About = dict[str, Any]
 
-_KIND, _VERSION = "orbiframe surface", 1
-# What numpy, zipfile and json raise where bytes are not those that were written; zipfile raises RuntimeError too.
-_DAMAGE = (ValueError, LookupError, TypeError, OSError, EOFError, RuntimeError, zipfile.BadZipFile, zlib.error)
+_KIND, _VERSION = "orbiframe surface", 2
+# Files of version 1 have no check sums.
+_KNOWN = (1, 2)
+_LONGEST_TEXT = 2**16
 _MESH = ("vertices", "offsets", "tail", "twin", "same")
+_ATLAS = ("radius", "tail", "head", "inverse", "isometry")
+_WORDS = {
+    "geometry": str,
+    "euler_characteristic": int,
+    "orientable": bool,
+    "group": str,
+    "weights": str,
+    "basis": str,
+    "options": dict,
+}
+# The type of every array and its shape, where a letter is a length that all arrays with it share.
+_SHAPES: dict[str, tuple[type, tuple[int | str, ...]]] = {
+    **{
+        f"{mesh}_{name}": (kind, shape)
+        for mesh, v, f, h in (("coarse", "V", "F", "H"), ("fine", "W", "G", "I"))
+        for name, kind, shape in (
+            ("vertices", np.float64, (v, 3)),
+            ("offsets", np.intp, (f,)),
+            ("tail", np.intp, (h,)),
+            ("twin", np.intp, (h,)),
+            ("same", np.bool_, (h,)),
+        )
+    },
+    "atlas_radius": (np.float64, ("P",)),
+    "atlas_tail": (np.intp, ("T",)),
+    "atlas_head": (np.intp, ("T",)),
+    "atlas_inverse": (np.intp, ("T",)),
+    "atlas_isometry": (np.float64, ("T", 3, 3)),
+    "side": (np.intp, ("N",)),
+    "child": (np.intp, ("N",)),
+    "patch": (np.intp, ("W",)),
+    "points": (np.float64, ("W", 3)),
+    "transition": (np.intp, ("I",)),
+    "area": (np.float64, ()),
+    "coefficients": (np.float64, ("B", 3)),
+    "origin": (np.float64, (3,)),
+    "scale": (np.float64, ()),
+}
+# Arrays that some surfaces have.
+_OPTIONAL: dict[str, tuple[type, tuple[int | str, ...]]] = {
+    "density": (np.float64, ("W",)),
+    "flip_halfedge": (np.intp, ("L", 2)),
+    "flip_crossing": (np.float64, ("L", 2)),
+}
+_KINDS = _SHAPES | _OPTIONAL
 
 
 def save_surface(surface: OrbifoldSurface, path: Path) -> None:
     """Write a surface as a NumPy archive (.npz) without pickled objects; the file appears whole or not at all.
 
     It holds the mesh, the map, the coefficients, and the name and options of the basis, which is built anew from them
-    when loaded: the same input gives the same basis. Raises FormatError where the file cannot be written.
+    when loaded: the same input gives the same basis. A check sum of each array goes with them. Raises FormatError where
+    the file cannot be written.
     """
-    path = Path(path)
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        with unfinished.open("wb") as file:
-            np.savez_compressed(file, **_arrays(surface))
-        unfinished.replace(path)
-    except OSError as error:
-        raise FormatError(f"{path}: the surface cannot be written: {error.strerror}") from error
-    finally:
-        with suppress(OSError):
-            unfinished.unlink()
+    arrays = _arrays(surface)
+    about = _about(surface)
+    sums = {name: _sum_of(array) for name, array in arrays.items()}
+    text = json.dumps(about | {"sha256": sums | {"about": _sum_of_words(about)}}, sort_keys=True)
+    with output(Path(path)) as made, made.open("wb") as file:
+        np.savez_compressed(file, **{"about": np.array(text), **arrays})  # type: ignore[arg-type]
 
 
 def load_surface(path: Path, registry: Components) -> OrbifoldSurface:
     """The surface of a file that `save_surface` wrote; evaluates to the same bits with the same versions.
 
-    Raises FormatError, naming the file, for any other file; UsageError or PluginError where the geometry or the basis
-    is not installed or takes other options now.
+    Everything that later steps rely on is checked before anything is computed: shapes and types before memory is
+    taken, then the laws of meshes, refinements, atlases and maps (see `surface_laws`), then the check sums. Raises
+    FormatError, naming the file, the array and the law, for any file with other content; UsageError or PluginError
+    where the geometry or the basis is not installed or takes other options now.
     """
     path = Path(path)
     require_readable(path)
     try:
-        with np.load(path, allow_pickle=False) as archive:
-            arrays = {name: archive[name] for name in archive.files}
-        about = json.loads(str(arrays["about"]))
-        if (about["kind"], about["version"]) != (_KIND, _VERSION):
-            raise FormatError(f"{path}: version {about['version']} of '{about['kind']}' is not known; version 1 is")
-        triangulation = _triangulation(arrays, about, registry)
-        coarse = _polyhedron(arrays, "coarse")
-        refinement = Bisection(coarse, triangulation.polyhedron, arrays["side"], arrays["child"])
-        coefficients, origin, scale = arrays["coefficients"], arrays["origin"], float(arrays["scale"])
-        name, options = about["basis"], dict(about["options"])
-    except _DAMAGE as error:
+        arrays, about = _read(path)
+        return _surface(arrays, about, registry, path)
+    except BrokenLaw as error:
+        raise FormatError(f"{path}: {error}; the file was changed or damaged: save the surface again") from error
+
+
+# ---- reading ------------------------------------------------------------------------------------------------------
+
+
+def _read(path: Path) -> tuple[Arrays, About]:
+    """All arrays, and what the file says of itself; whatever the parsers of archives and texts raise is a sentence."""
+    try:
+        with ArrayArchive(path) as archive:
+            about = _read_about(archive, path)
+            _require_shapes(archive.shapes)
+            return {name: archive.read(name) for name in _KINDS if name in archive.shapes}, about
+    except (BrokenLaw, FormatError):
+        raise
+    except Exception as error:
         raise FormatError(
             f"{path}: this is not a whole surface file ({type(error).__name__}: {error}); make it with "
             "`orbiframe fit MESH -o OUT --save FILE`"
         ) from error
-    make = registry.load("basis", name)
-    basis: Any = make(triangulation.orbifold, triangulation, **checked_options(make, options, "basis", {}))
+
+
+def _read_about(archive: ArrayArchive, path: Path) -> About:
+    """What the file says of itself; its version is known and every entry of its type."""
+    shape = archive.shapes["about"]
+    if shape.type.kind != "U" or shape.shape != () or shape.size > _LONGEST_TEXT:
+        raise ValueError("the array 'about' is no short text")
+    about = json.loads(str(archive.read("about")), object_pairs_hook=_without_doubles, parse_constant=_no_number)
+    kind, version = about["kind"], about["version"]
+    if kind != _KIND or isinstance(version, bool) or version not in _KNOWN:
+        raise FormatError(f"{path}: version {version} of '{kind}' is not known; versions 1 and 2 are")
+    for name, type_ in _WORDS.items():
+        if not isinstance(about[name], type_) or (isinstance(about[name], bool) and type_ is not bool):
+            raise TypeError(f"'{name}' in the array 'about' is no {type_.__name__}")
+    return dict(about)
+
+
+def _without_doubles(pairs: list[tuple[str, Any]]) -> About:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise ValueError("the array 'about' has an entry twice")
+    return found
+
+
+def _no_number(name: str) -> float:
+    raise ValueError(f"the array 'about' has the entry {name}")
+
+
+def _require_shapes(shapes: Mapping[str, Shape]) -> None:
+    """Raise BrokenLaw unless all arrays are there, of their types and of shapes that fit together."""
+    lengths: dict[str, tuple[int, str]] = {}
+    for name, (type_, asked) in _KINDS.items():
+        if name in _OPTIONAL and name not in shapes:
+            continue
+        found = shapes[name]
+        if found.type.newbyteorder("=") != np.dtype(type_):
+            raise BrokenLaw(name, f"its numbers are {np.dtype(type_).name}, not {found.type.name}")
+        if len(found.shape) != len(asked):
+            raise BrokenLaw(name, f"it has {len(asked)} axes, not {len(found.shape)}")
+        for length, wanted in zip(found.shape, asked, strict=True):
+            known, owner = lengths.setdefault(wanted, (length, name)) if isinstance(wanted, str) else (wanted, "")
+            if length != known:
+                like = f", as in '{owner}'" if owner else ""
+                raise BrokenLaw(name, f"it is {found.shape}, but {known} is required{like}")
+    if extra := set(shapes) - set(_KINDS) - {"about"}:
+        raise BrokenLaw(min(extra), "surface files have no such array")
+
+
+def _surface(arrays: Arrays, about: About, registry: Components, path: Path) -> OrbifoldSurface:
+    geometry: Any = registry.load("geometry", about["geometry"])()
+    make = registry.load("basis", about["basis"])
+    options = checked_options(make, about["options"], "basis", {})
+    chi = about["euler_characteristic"]
+    plane = geometry_name(chi)
+    require(about["geometry"] == plane, "about", f"a surface of Euler characteristic {chi} is made of {plane}")
+    coarse, fine = (require_mesh(arrays, prefix, about) for prefix in ("coarse", "fine"))
+    refinement = require_refinement(arrays, coarse, fine)
+    atlas = require_atlas(arrays, geometry)
+    orbifold = Orbifold(atlas, chi, about["orientable"], float(arrays["area"]))
+    places = arrays["patch"], arrays["points"], arrays["transition"]
+    density = arrays.get("density")
+    if density is not None:
+        require(np.isfinite(density) & (density > 0), "density", "numbers are finite and positive")
+    triangulation = Triangulation(orbifold, fine, *places, about["group"], about["weights"], density)
+    require_map(triangulation)
+    coefficients, origin, scale = arrays["coefficients"], arrays["origin"], float(arrays["scale"])
+    for name in ("coefficients", "origin", "scale"):
+        require(np.isfinite(arrays[name]), name, "numbers are finite")
+    require(scale > 0, "scale", "it is positive")
+    _require_sums(arrays, about)
+    basis = _basis(make, about["basis"], triangulation, options, path)
     if basis.size != len(coefficients):
         raise FormatError(
-            f"{path}: the file has {len(coefficients)} coefficients and the installed basis '{name}' {basis.size} "
-            "functions; install the version of its plugin that made the file, or fit the mesh again"
+            f"{path}: the file has {len(coefficients)} coefficients and the installed basis '{about['basis']}' "
+            f"{basis.size} functions; install the version of its plugin that made the file, or fit the mesh again"
         )
-    return OrbifoldSurface(triangulation, refinement, basis, coefficients, origin, scale, name, options)
+    return OrbifoldSurface(
+        triangulation, refinement, basis, coefficients, origin, scale, about["basis"], about["options"]
+    )
 
 
-def _arrays(surface: OrbifoldSurface) -> dict[str, Any]:
+def _basis(make: Any, name: str, triangulation: Triangulation, options: Mapping[str, Any], path: Path) -> Any:
+    try:
+        return make(triangulation.orbifold, triangulation, **options)
+    except OrbiframeError:
+        raise
+    except Exception as error:
+        raise FormatError(
+            f"{path}: the basis '{name}' cannot be made of it ({type(error).__name__}: {error}); fit the mesh again"
+        ) from error
+
+
+# ---- check sums ---------------------------------------------------------------------------------------------------
+
+
+def _require_sums(arrays: Arrays, about: About) -> None:
+    """Raise BrokenLaw for an array that is not the one that was saved."""
+    if about["version"] == 1:
+        return
+    sums = about["sha256"]
+    words = {key: value for key, value in about.items() if key != "sha256"}
+    require(sums["about"] == _sum_of_words(words), "about", "it is what was saved (SHA-256)")
+    for name, array in arrays.items():
+        require(sums[name] == _sum_of(array), name, "it is what was saved (SHA-256)")
+
+
+def _sum_of(array: NDArray[Any]) -> str:
+    return hashlib.sha256(np.ascontiguousarray(array).tobytes()).hexdigest()
+
+
+def _sum_of_words(about: About) -> str:
+    return hashlib.sha256(json.dumps(about, sort_keys=True).encode()).hexdigest()
+
+
+# ---- writing ------------------------------------------------------------------------------------------------------
+
+
+def _about(surface: OrbifoldSurface) -> About:
     triangulation, orbifold = surface.triangulation, surface.orbifold
-    atlas = orbifold.atlas
-    about = {
+    return {
         "kind": _KIND,
         "version": _VERSION,
         "geometry": orbifold.geometry.name,
@@ -100,37 +264,29 @@ def _arrays(surface: OrbifoldSurface) -> dict[str, Any]:
         "basis": surface.basis_name,
         "options": dict(surface.basis_options),
     }
-    return {
-        "about": np.array(json.dumps(about, sort_keys=True)),
+
+
+def _arrays(surface: OrbifoldSurface) -> dict[str, NDArray[Any]]:
+    triangulation = surface.triangulation
+    found = {
         **{f"coarse_{name}": getattr(surface.refinement.coarse, name) for name in _MESH},
         **{f"fine_{name}": getattr(triangulation.polyhedron, name) for name in _MESH},
-        **{f"atlas_{name}": getattr(atlas, name) for name in ("radius", "tail", "head", "inverse", "isometry")},
+        **{f"atlas_{name}": getattr(surface.orbifold.atlas, name) for name in _ATLAS},
         "side": surface.refinement.side,
         "child": surface.refinement.child,
         "patch": triangulation.patch,
         "points": triangulation.points,
         "transition": triangulation.transition,
-        "area": np.array(orbifold.area),
+        "area": surface.orbifold.area,
         "coefficients": surface.coefficients,
         "origin": surface.origin,
-        "scale": np.array(surface.scale),
+        "scale": surface.scale,
     }
+    found |= {name: array for name, array in _optional(surface).items() if array is not None}
+    return {name: np.asarray(array, dtype=_KINDS[name][0]) for name, array in found.items()}
 
 
-def _triangulation(arrays: Arrays, about: Mapping[str, Any], registry: Components) -> Triangulation:
-    geometry: Any = registry.load("geometry", about["geometry"])()
-    atlas = Atlas(geometry, *(arrays[f"atlas_{name}"] for name in ("radius", "tail", "head", "inverse", "isometry")))
-    orbifold = Orbifold(atlas, about["euler_characteristic"], about["orientable"], float(arrays["area"]))
-    return Triangulation(
-        orbifold,
-        _polyhedron(arrays, "fine"),
-        arrays["patch"],
-        arrays["points"],
-        arrays["transition"],
-        about["group"],
-        about["weights"],
-    )
-
-
-def _polyhedron(arrays: Arrays, prefix: str) -> Polyhedron:
-    return Polyhedron(*(arrays[f"{prefix}_{name}"] for name in _MESH))
+def _optional(surface: OrbifoldSurface) -> dict[str, NDArray[Any] | None]:
+    flips = surface.refinement.flips
+    turned = {} if flips is None else {"flip_halfedge": flips.halfedge, "flip_crossing": flips.crossing}
+    return {"density": surface.triangulation.density, **turned}

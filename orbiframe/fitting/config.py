@@ -9,14 +9,16 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from annotated_types import Ge, Gt
 
 from orbiframe.components.options import Option, checked_options, checked_value, options_of, place_of, require_known
 from orbiframe.components.registry import Registry
 from orbiframe.components.suggestion import did_you_mean
-from orbiframe.errors import ConfigError, PluginError, UsageError
+from orbiframe.errors import ConfigError, FormatError, PluginError, UsageError
+from orbiframe.files.places import require_readable
+from orbiframe.fitting.limits import require_size
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,12 +39,27 @@ class Step:
 class Output:
     """What to make of the surface.
 
-    refine: every triangle of the mesh becomes refine^2 triangles, None for as many as a fine picture needs; tolerance:
-    largest root mean square error allowed, relative to the diagonal of the bounding box, None for a fixed size.
+    refine: every triangle of the mesh becomes refine^2 triangles, None for as many as a fine picture needs; tolerance
+    and max_error: the largest root mean square and the largest distance allowed, relative to the diagonal of the
+    bounding box, None for a fixed size.
     """
 
     refine: Annotated[int, Ge(1)] | None = None
     tolerance: Annotated[float, Gt(0)] | None = None
+    max_error: Annotated[float, Gt(0)] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Data:
+    """What the mesh means.
+
+    means: "facets", the polyhedron is the truth; "smooth", its vertices lie on a smooth surface; "semi-smooth", so they
+    do where facets are curved; "auto" decides by its bends. lift: whether a smooth mesh is mapped again after it has
+    been lifted onto its first surface.
+    """
+
+    means: Literal["auto", "smooth", "semi-smooth", "facets"] = "auto"
+    lift: bool = True
 
 
 OPEN_NAMES = ("auto", "mesh", "none")
@@ -55,14 +72,15 @@ STEPS = {
     "map": ("parametrizer", "method", "auto"),
     "shape": ("optimizer", "method", "none"),
     "basis": ("basis", "name", "gaussian"),
-    "fitter": ("fitter", "name", "least-squares"),
+    "fitter": ("fitter", "name", "sliding"),
 }
-TABLES = (*STEPS, "output")
+TABLES = (*STEPS, "data", "output")
+_LARGEST_FILE = 2**20
 
 
 @dataclass(frozen=True, slots=True)
 class Config:
-    """A fit in words: a step for each of the tables of `STEPS`, the output, plugin files.
+    """A fit in words: a step for each of the tables of `STEPS`, the output, what the mesh means, plugin files.
 
     mesh: the reader, "auto" by the file suffix; group: "mesh" takes the group from the mesh; marking: cuts the mesh
     open for a named group; map: "auto" takes the parametrizer that fits the geometry and the group; shape: changes
@@ -72,6 +90,7 @@ class Config:
 
     steps: Mapping[str, Step]
     output: Output = field(default_factory=Output)
+    data: Data = field(default_factory=Data)
     plugins: tuple[Path, ...] = ()
     places: Mapping[str, str] = field(default_factory=dict)
 
@@ -103,7 +122,8 @@ class Config:
         files = checked_value(tuple[str, ...], tables.get("plugins", []), "plugins", places)
         steps = {table: _step(table, _table(tables, table, places), places) for table in STEPS}
         output = Output(**checked_options(Output, _table(tables, "output", places), "output", places))
-        return cls(steps, output, tuple(folder / file for file in files), places)
+        data = Data(**checked_options(Data, _table(tables, "data", places), "data", places))
+        return cls(steps, output, data, tuple(folder / file for file in files), places)
 
     @property
     def mesh(self) -> Step:
@@ -169,6 +189,7 @@ class Config:
 
         The options of an open step must belong to one of the components of its kind.
         """
+        require_size(self.basis.options.get("size"), self.places)
         for table, step in self.steps.items():
             if not step.open:
                 self.component(table, registry)
@@ -179,16 +200,19 @@ class Config:
 
 def _read(path: Path) -> str:
     try:
+        require_readable(path, _LARGEST_FILE, empty=True)
         return path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
+    except (FormatError, OSError, UnicodeDecodeError) as error:
         raise ConfigError(f"the configuration {path} cannot be read: {error}") from error
 
 
 def _parsed(text: str, path: Path | None) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # also for numbers of thousands of digits
         raise ConfigError(f"{path} is not TOML: {error}") from error
+    except RecursionError as error:
+        raise ConfigError(f"{path}: lists and tables are nested too deep; no option needs that") from error
 
 
 _HEADER = re.compile(r"\s*\[\s*([\w-]+)\s*\]")
@@ -219,10 +243,16 @@ def parsed_override(text: str) -> tuple[str, str, Any]:
 
 
 def _toml_value(text: str) -> Any:
+    """The value that a text is in TOML, or the text itself where it is none or more than one."""
     try:
-        return tomllib.loads(f"value = {text}")["value"]
+        found = tomllib.loads(f"value = {text}")
     except tomllib.TOMLDecodeError:
         return text
+    except ValueError as error:  # numbers of thousands of digits
+        raise ConfigError(f"--set …={text[:20]}…: {error}") from error
+    except RecursionError as error:
+        raise ConfigError(f"--set …={text[:20]}…: lists and tables are nested too deep") from error
+    return found["value"] if len(found) == 1 else text
 
 
 def require_table(name: str, known: Sequence[str], places: Mapping[str, str]) -> None:

@@ -4,30 +4,26 @@ from __future__ import annotations
 
 import platform
 from importlib.metadata import PackageNotFoundError, version
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.fitting.accuracy import Accuracy
+from orbiframe.fitting.approximation import Approximation
 from orbiframe.fitting.config import Config
-from orbiframe.functions.samples import Samples
+from orbiframe.fitting.inspection import Inspection
 from orbiframe.meshes.face_diagonals import RULE
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
 from orbiframe.meshes.surface_type import SurfaceType
 from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.triangulations.face_shapes import FaceShapes
+from orbiframe.triangulations.local_girth import girth_radius
 from orbiframe.triangulations.lost_digits import crowding_of
 from orbiframe.triangulations.triangulation import Triangulation
 
 _PACKAGES = ("orbiframe", "numpy", "scipy", "numba")
-
-
-class Deviation(NamedTuple):
-    """Root mean square and largest distance of the surface from the mesh, relative to the bounding box's diagonal."""
-
-    rms: float
-    max: float
 
 
 def report(
@@ -35,14 +31,15 @@ def report(
     surface_type: SurfaceType,
     polyhedron: Polyhedron,
     config: Config,
-    samples: Samples,
-    deviation: Deviation,
-    faces: tuple[FaceShapes, FaceShapes | None],
+    found: Approximation,
     output: Polyhedron,
+    inspection: Inspection,
     seconds: dict[str, float],
 ) -> dict[str, Any]:
     """All that a user should know of a fit, with plain numbers and strings only."""
     triangulation = surface.triangulation
+    area_in_space = float(np.linalg.norm(vector_areas(triangulation.polyhedron), axis=1).sum())
+    rms, largest = found.accuracy.against(found.meaning.smooth)
     return {
         "surface": {
             "name": surface_type.name,
@@ -59,14 +56,30 @@ def report(
             "relation_defect": triangulation.relation_defect,
         },
         "map": _map_report(triangulation),
-        "faces": _faces_report(*faces),
+        "faces": _faces_report(*found.mapped.face_shapes(polyhedron)),
+        "data": {
+            "means": found.meaning.name,
+            "reason": found.meaning.reason,
+            "bend_share": found.meaning.bend_share,
+            "girth_energy": found.energy,
+        },
         "fit": {
             "basis": config.basis.name,
+            "fitter": config.fitter.name,
             "size": surface.basis.size,
-            "samples": len(samples.weights),
-            "rms": deviation.rms,
-            "max": deviation.max,
+            "samples": int((found.samples.weights > 0).sum()),
+            "rms": rms,
+            "max": largest,
         },
+        "distance": _distances_report(found.accuracy, surface),
+        "shape": {
+            "folded_share": inspection.folded,
+            "self_intersections": {"mesh": len(inspection.in_mesh), "output": len(inspection.in_output)},
+            "volume_ratio": inspection.volume,
+            "girth": girth_radius(found.mapped.triangulation),
+            "spacing": float(np.sqrt(area_in_space / surface.basis.size)),
+        },
+        "notes": [*found.notes, *inspection.notes(output)],
         "output": {
             "vertices": len(output.vertices),
             "faces": output.face_count,
@@ -82,6 +95,24 @@ def _faces_report(now: FaceShapes, before: FaceShapes | None) -> dict[str, Any]:
     return {**now.summary(), "before": None if before is None else before.summary()}
 
 
+def _distances_report(accuracy: Accuracy, surface: OrbifoldSurface) -> dict[str, Any]:
+    """Distances in diagonals, with the places in the coordinates of the mesh where they are largest."""
+    named = {
+        "mesh_to_surface": accuracy.to_surface,
+        "surface_to_mesh": accuracy.to_mesh,
+        "vertices_to_surface": accuracy.vertices,
+    }
+    return {
+        name: {
+            "rms": part.rms,
+            "mean": part.mean,
+            "max": part.max,
+            "place": [float(x) for x in surface.origin + surface.scale * np.array(part.place)],
+        }
+        for name, part in named.items()
+    } | {"normals": accuracy.normals}
+
+
 def _cut_report(polyhedron: Polyhedron) -> dict[str, Any]:
     """How the faces of the input were cut into triangles, without new vertices."""
     larger = polyhedron.face_sizes[polyhedron.face_sizes > 3]
@@ -95,10 +126,16 @@ def _map_report(triangulation: Triangulation) -> dict[str, Any]:
         "triangles": triangulation.polyhedron.face_count,
         "not_positive": triangulation.not_positive,
         "area_defect": triangulation.area_defect,
-        "crowding": crowding_of(triangulation)._asdict(),
+        "crowding": _crowding_report(triangulation),
         "angle_distortion": {"median": median, "p95": p95, "max": float(triangulation.angle_distortion.max())},
         "weights": triangulation.weights,
     }
+
+
+def _crowding_report(triangulation: Triangulation) -> dict[str, float]:
+    """The lost digits to three places: the origins of patches, from which they are counted, are set no better."""
+    crowding = crowding_of(triangulation)
+    return {**crowding._asdict(), "digits_lost": round(crowding.digits_lost, 3)}
 
 
 def _weighted_quantiles(values: NDArray[np.float64], weights: NDArray[np.float64], levels: list[float]) -> list[float]:

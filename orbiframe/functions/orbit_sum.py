@@ -8,22 +8,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.compiled.decorator import compiled
+from orbiframe.functions.lifted_centres import Images, LiftedCentres
 from orbiframe.meshes.edge_paths import curve_order
 from orbiframe.orbifolds.atlas import Points
-from orbiframe.orbifolds.orbifold import Copies, Orbifold
+from orbiframe.planes.geometry import Geometry
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 _LEAF = 8  # points in a leaf of the search tree
 _BLOCK = 1 << 15  # rows of a block: bounds the memory of everything computed per pair
-_BATCH = 256  # patches whose lifts are found in one walk
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,91 +43,33 @@ class Pairs:
     tests: int
 
 
-def reaching_pairs(
-    orbifold: Orbifold, centres: Points, support: Floats, points: Points, *, slopes: bool = False
-) -> Iterator[Pairs]:
+def reaching_pairs(lifted: LiftedCentres, points: Points, *, slopes: bool = False) -> Iterator[Pairs]:
     """All pairs of a point and a lift of a centre whose versine is below the support of the centre, in blocks of rows.
 
-    centres: N points of X/H; support: (N,), the versine at which the function of a centre vanishes (2 and more in S^2:
-    never). Every block belongs to one patch: the centres are moved into its frame through the lifts of all patches
-    within reach, and found by a tree of balls over the points, whose test costs no root and no arc function.
+    A support of 2 and more reaches every point of S^2. Every block belongs to one patch: the lifts of centres that are
+    seen from there meet a tree of balls over the points, whose test costs no root and no arc function.
     """
+    geometry = lifted.orbifold.geometry
     order = np.argsort(points.patch, kind="stable")
     patches, first = np.unique(points.patch[order], return_index=True)
     members = np.split(order, first[1:])
-    field = _Field(orbifold, centres, support)
-    for begin in range(0, len(patches), _BATCH):
-        batch = members[begin : begin + _BATCH]
-        radii = np.array([orbifold.geometry.distance(orbifold.geometry.origin, points.x[m]).max() for m in batch])
-        copies = field.copies_within(patches[begin : begin + _BATCH], radii)
-        bounds = np.searchsorted(copies.base, np.arange(len(batch) + 1))
-        for unsorted, radius, (low, high) in zip(batch, radii, pairwise(bounds), strict=True):
-            images = field.images(copies.take(np.arange(low, high)), radius)
-            rows = unsorted[curve_order(points.x[unsorted])]
-            for part in np.split(rows, range(_BLOCK, len(rows), _BLOCK)):
-                yield _pairs_of_block(orbifold, images, part, points.x[part], slopes)
+    radii = np.zeros(lifted.orbifold.atlas.patch_count)
+    np.maximum.at(radii, points.patch, geometry.distance(geometry.origin, points.x))
+    for unsorted, images in zip(members, lifted.seen_from(patches, radii[patches]), strict=False):
+        rows = unsorted[curve_order(points.x[unsorted])]
+        for part in np.split(rows, range(_BLOCK, len(rows), _BLOCK)):
+            yield _pairs_of_block(geometry, images, lifted.support[images.column], part, points.x[part], slopes)
 
 
-@dataclass(frozen=True, eq=False)
-class _Images:
-    """Lifts of centres in one frame: the centre of each, (k,), its place, (k, 3), and its support, (k,)."""
-
-    column: Ints
-    x: Floats
-    support: Floats
-
-
-class _Field:
-    """The centres sorted by patch, with how far each reaches."""
-
-    def __init__(self, orbifold: Orbifold, centres: Points, support: Floats) -> None:
-        geometry = orbifold.geometry
-        self.orbifold = orbifold
-        self.column = np.argsort(centres.patch, kind="stable")
-        self.start = np.searchsorted(centres.patch[self.column], np.arange(orbifold.atlas.patch_count + 1))
-        self.x, self.support = centres.x[self.column], support[self.column]
-        self.reach = versine_distance(geometry.curvature, self.support)
-        self.outreach = np.full(orbifold.atlas.patch_count, -np.inf)
-        np.maximum.at(
-            self.outreach, centres.patch[self.column], self.reach + geometry.distance(geometry.origin, self.x)
-        )
-
-    def copies_within(self, patches: Ints, radii: Floats) -> Copies:
-        """The copies of patches with a centre that may reach a disc about the origin of each of the given frames."""
-        geometry = self.orbifold.geometry
-        copies = self.orbifold.copies(patches, radii + self.outreach.max())
-        place = geometry.distance(geometry.origin, copies.isometry[:, :, 0])
-        return copies.take(place <= radii[copies.base] + self.outreach[copies.patch])
-
-    def images(self, copies: Copies, radius: float) -> _Images:
-        """The lifts of centres through these copies that reach the disc of this radius, sorted by centre."""
-        geometry = self.orbifold.geometry
-        count = self.start[copies.patch + 1] - self.start[copies.patch]
-        copy = np.repeat(np.arange(len(count)), count)
-        centre = np.arange(len(copy)) - np.repeat(np.cumsum(count) - count - self.start[copies.patch], count)
-        x = geometry.settle(geometry.act(copies.isometry[copy], self.x[centre]))
-        near = np.flatnonzero(geometry.distance(geometry.origin, x) <= radius + self.reach[centre])
-        near = near[np.argsort(self.column[centre[near]], kind="stable")]
-        return _Images(self.column[centre[near]], x[near], self.support[centre[near]])
-
-
-def versine_distance(curvature: int, versine: Floats) -> Floats:
-    """The distance d of a versine c: 2 asin(sqrt(c / 2)), sqrt(2 c) or 2 asinh(sqrt(c / 2)); pi where c > 2 in S^2."""
-    half = np.sqrt(versine / 2)
-    if curvature > 0:
-        return np.asarray(2 * np.arcsin(np.minimum(half, 1.0)))
-    return 2 * (np.arcsinh(half) if curvature < 0 else half)
-
-
-def _pairs_of_block(orbifold: Orbifold, images: _Images, rows: Ints, x: Floats, slopes: bool) -> Pairs:
+def _pairs_of_block(geometry: Geometry, images: Images, support: Floats, rows: Ints, x: Floats, slopes: bool) -> Pairs:
     """The pairs of some points x of one patch, (r, 3), in an order in which neighbours are near."""
-    geometry, curvature = orbifold.geometry, orbifold.geometry.curvature
+    curvature = geometry.curvature
     levels = max(int(np.ceil(np.log2(len(rows) / _LEAF))), 0)
     ball, spread = _balls(curvature, x, levels)
 
     def search(cursor: Ints, found: Ints, versine: Floats, fill: bool) -> int:
         tree = (curvature, x, ball, spread, levels)
-        return int(_search(tree, images.x, images.support, cursor, found, versine, fill))
+        return int(_search(tree, images.x, support, cursor, found, versine, fill))
 
     count = np.zeros(len(rows), dtype=np.intp)
     tests = search(count, np.zeros(0, dtype=np.intp), np.zeros(0), False)

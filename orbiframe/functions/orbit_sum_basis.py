@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 from orbiframe.errors import FitError
 from orbiframe.functions.basis import JET_KINDS, DifferentiableBasis
 from orbiframe.functions.jet_quotient import divide_jets
+from orbiframe.functions.lifted_centres import LiftedCentres
 from orbiframe.functions.orbit_sum import Pairs, reaching_pairs
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Orbifold
@@ -34,6 +35,7 @@ class OrbitSumBasis(DifferentiableBasis):
         self.centres = centres
         self.support = support
         self.size = len(support)
+        self._lifted = LiftedCentres(orbifold, centres, support)
 
     @abstractmethod
     def profile(self, t: Floats) -> tuple[Floats, ...]:
@@ -44,7 +46,7 @@ class OrbitSumBasis(DifferentiableBasis):
 
         Order 3 needs f''' from the profile: FitError where it gives none.
         """
-        pairs = reaching_pairs(self.orbifold, self.centres, self.support, points, slopes=order > 0)
+        pairs = reaching_pairs(self._lifted, points, slopes=order > 0)
         blocks = [self._jets(block, points, order) for block in pairs]
         return _assemble(blocks, (len(points.patch), self.size), JET_KINDS[order])
 

@@ -18,17 +18,26 @@ Ints = NDArray[np.intp]
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """What a fitter approximates: d functions at n points of X/H.
+    """What a fitter approximates: d functions at n points of X/H, and where it asks for fairness.
 
-    points: n points of X/H; values: (n, d); weights: (n,), positive, of any scale (area in space, say); stretch: (n,),
-    area in X per area in space near each point, which turns Laplacians on X/H into Laplacians on the surface. Raises
-    FitError if the shapes do not fit, for a value that is not finite, and for a weight or stretch that is negative.
+    points: n points of X/H; values: (n, d); weights: (n,), how much each value counts, of any scale (area in space,
+    say), 0 where only fairness is asked for; stretch: (n,), area in X per area in space near each point, which turns
+    derivatives on X/H into those on the surface.
+
+    area: (n,), the area in space that each sample stands for in integrals of fairness; as the weights if not given;
+    length: (n,), the length in space from which on the functions are to be fair, None for the distance between
+    neighbouring functions; order: the order of the derivatives that are to be small between the values, 2 where the
+    samples are all that is known, 3 where they lie on a smooth surface. Raises FitError if the shapes do not fit, for a
+    value that is not finite, and for another number that is negative or not finite.
     """
 
     points: Points
     values: Floats
     weights: Floats
     stretch: Floats
+    area: Floats | None = None
+    length: Floats | None = None
+    order: int = 2
 
     def __post_init__(self) -> None:
         count = len(self.points.patch)
@@ -39,13 +48,23 @@ class Samples:
                 "(n, d), (n,) and (n,)"
             )
         _require("value", np.all(np.isfinite(self.values), axis=1), self.values, "finite")
-        for name, numbers in (("weight", self.weights), ("stretch", self.stretch)):
-            _require(name, np.isfinite(numbers) & (numbers >= 0), numbers, "finite and not negative")
+        for name in ("weight", "stretch", "area", "length"):
+            numbers = getattr(self, "weights" if name == "weight" else name)
+            if numbers is not None:
+                _require(name, np.isfinite(numbers) & (numbers >= 0), numbers, "finite and not negative")
+
+    @property
+    def shares(self) -> Floats:
+        """The area that each sample stands for, (n,)."""
+        return self.weights if self.area is None else self.area
 
     def take(self, chosen: Ints) -> Samples:
         """Some of the samples, in the order of the indices `chosen`."""
         points = Points(self.points.patch[chosen], self.points.x[chosen])
-        return Samples(points, self.values[chosen], self.weights[chosen], self.stretch[chosen])
+        area, length = (None if numbers is None else numbers[chosen] for numbers in (self.area, self.length))
+        return Samples(
+            points, self.values[chosen], self.weights[chosen], self.stretch[chosen], area, length, self.order
+        )
 
 
 def _require(name: str, good: NDArray[np.bool_] | np.bool_, numbers: Floats, what: str) -> None:
@@ -55,11 +74,17 @@ def _require(name: str, good: NDArray[np.bool_] | np.bool_, numbers: Floats, wha
 
 
 def coordinate_samples(triangulation: Triangulation) -> Samples:
-    """The positions in space at the vertices and the face centroids, weighted by area in space.
+    """The positions in space at the vertices and the face centroids that have some area, weighted by area in space.
 
     A vertex has a twelfth of the area of each of its triangles, a centroid three quarters: exact for quadratic
     functions on each triangle. The stretch at a vertex is that of its faces together.
     """
+    samples = places(triangulation)
+    return samples.take(np.flatnonzero(samples.weights > 0))
+
+
+def places(triangulation: Triangulation) -> Samples:
+    """The same at all vertices, then all centroids, those without area too."""
     mesh = triangulation.polyhedron
     area = np.linalg.norm(vector_areas(mesh), axis=1)
     count = len(mesh.vertices)
@@ -73,5 +98,4 @@ def coordinate_samples(triangulation: Triangulation) -> Samples:
     weights = np.concatenate([around / 12, 0.75 * area])
     tiny = np.finfo(float).tiny
     stretch = np.concatenate([image / np.maximum(around, tiny), triangulation.areas / np.maximum(area, tiny)])
-    kept = weights > 0
-    return Samples(Points(points.patch[kept], points.x[kept]), values[kept], weights[kept], stretch[kept])
+    return Samples(points, values, weights, stretch)

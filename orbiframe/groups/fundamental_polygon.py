@@ -168,8 +168,8 @@ class FundamentalPolygon:
 
     def _along(self, points: Floats, start: Floats, end: Floats) -> Bools:
         """Which points lie on the side of `end` of the perpendicular through `start`, (..., n)."""
-        offset = self.geometry.chord(start, points[..., None, :])
-        return np.asarray(self.geometry.inner(self.geometry.log(start, end), offset) >= 0)
+        geometry, there = self.geometry, points[..., None, :]
+        return np.asarray(geometry.inner(start, geometry.log(start, end), geometry.log(start, there)) >= 0)
 
     def _product(self, relation: tuple[int, ...]) -> Floats:
         product = np.eye(3)

@@ -49,7 +49,7 @@ class Group(ABC):
         """The transitions of `atlas()` without the identity, as pairs of complex numbers, (n,)."""
         return PreciseIsometry.of_matrix(self.geometry.curvature, self.atlas().isometry[1:])
 
-    def generator_spin(self, label: int) -> PreciseIsometry:
+    def precise_generator(self, label: int) -> PreciseIsometry:
         """The isometry that a label of the word stands for, as a pair of complex numbers."""
         return PreciseIsometry.of_matrix(self.geometry.curvature, self.generator(label))
 
@@ -58,14 +58,14 @@ class Group(ABC):
 
         Raises GeometryError for a letter that the group does not have.
         """
-        return self.element_spin(letters).matrix
+        return self.precise_element(letters).matrix
 
-    def element_spin(self, letters: str | tuple[int, ...]) -> PreciseIsometry:
+    def precise_element(self, letters: str | tuple[int, ...]) -> PreciseIsometry:
         """The same as a pair of complex numbers, which keeps the digits that a large matrix loses."""
         product = PreciseIsometry.of_matrix(self.geometry.curvature, np.eye(3))
         for letter in parse_letters(letters) if isinstance(letters, str) else letters:
             if letter not in self.word.letters and -letter not in self.word.letters:
                 raise GeometryError(f"letter {letter} is no generator; the generators are the letters of '{self.word}'")
-            g = self.generator_spin(abs(letter))
+            g = self.precise_generator(abs(letter))
             product = product @ (g if letter > 0 else g.inverse)
         return product

@@ -50,7 +50,7 @@ class PolygonGroup(Group):
         """The pairing of `word.generator_side(label)`."""
         return np.asarray(self.polygon.pairings[self.word.generator_side(label)])
 
-    def generator_spin(self, label: int) -> PreciseIsometry:
+    def precise_generator(self, label: int) -> PreciseIsometry:
         """The pairing of `word.generator_side(label)`."""
         return self.pairings()[self.word.generator_side(label)]
 

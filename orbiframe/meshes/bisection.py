@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.errors import TopologyError
+from orbiframe.meshes.flat_flips import FlatFlips
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
 from orbiframe.meshes.surface_type import doubled_edges
@@ -16,6 +17,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
+# Meshes without thousands of equal edges round a vertex are refined in 5 to 35 rounds.
+_PATIENCE = 50
+
 
 @dataclass(frozen=True, eq=False)
 class Bisection:
@@ -23,16 +27,29 @@ class Bisection:
 
     coarse, polyhedron: the mesh before and after; its first vertices are the coarse ones. side: (N,), the side across
     which node n of the forest is halved, -1 at a leaf; child: (N,), the first half, the second one follows it, or at
-    a leaf the triangle of the refined mesh. The first nodes are the coarse triangles.
+    a leaf the triangle of the refined mesh. flips: of edges of the coarse mesh, before any is halved; None for no
+    flip. The first nodes are the triangles after the flips.
     """
 
     coarse: Polyhedron
     polyhedron: Polyhedron
     side: Ints
     child: Ints
+    flips: FlatFlips | None = None
+
+    @property
+    def facets(self) -> Polyhedron:
+        """The coarse mesh after the flips: its triangles are those that are halved."""
+        return self.coarse if self.flips is None else self.flips.after
 
     def locate(self, face: Ints, barycentric: Floats) -> tuple[Ints, Floats]:
         """The fine triangle (n,) and the barycentric coordinates in it (n, 3) of points of coarse triangles."""
+        if self.flips is None:
+            return self.locate_in_facets(face, barycentric)
+        return self.locate_in_facets(*self.flips.locate(face, barycentric))
+
+    def locate_in_facets(self, face: Ints, barycentric: Floats) -> tuple[Ints, Floats]:
+        """The fine triangle (n,) and the barycentric coordinates in it (n, 3) of points of facets."""
         node = np.array(face, dtype=np.intp)
         weights = np.array(barycentric, dtype=np.float64)
         active = np.flatnonzero(self.side[node] >= 0)
@@ -63,10 +80,11 @@ class Bisection:
             node[parents, side] = first[:, 0] @ second[:, 0]
             node[parents, (side + 1) % 3] = second[:, 1]
             node[parents, (side + 2) % 3] = first[:, 2]
-        return node[: self.coarse.face_count].reshape(-1, *steps.shape[1:])
+        products = node[: self.coarse.face_count].reshape(-1, *steps.shape[1:])
+        return products if self.flips is None else self.flips.carried_back(products)
 
     def spread(self, corners: Floats) -> Floats:
-        """Values at the corners of the coarse triangles, (F, 3, k), linearly at the corners of the fine ones."""
+        """Values at the corners of the facets, (F, 3, k), linearly at the corners of the fine triangles."""
         node = np.zeros((len(self.side), 3, corners.shape[2]))
         node[: len(corners)] = corners
         for parents in self._levels():
@@ -80,6 +98,15 @@ class Bisection:
         fine[self.child[leaf]] = node[leaf]
         return fine
 
+    def origins(self) -> tuple[Ints, Floats]:
+        """A facet (V,) that holds each vertex of the fine mesh, and barycentric coordinates in it (V, 3)."""
+        count = self.coarse.face_count
+        corners = np.zeros((count, 3, 4))
+        corners[:, :, 0], corners[:, :, 1:] = np.arange(count)[:, None], np.eye(3)
+        fine = self.spread(corners).reshape(-1, 4)
+        first = np.unique(self.polyhedron.tail, return_index=True)[1]
+        return fine[first, 0].round().astype(np.intp), fine[first, 1:]
+
     def _levels(self) -> list[Ints]:
         """The nodes of the forest that are halved, those of each depth together, roots first."""
         levels = []
@@ -91,26 +118,33 @@ class Bisection:
         return levels
 
 
-def bisected(polyhedron: Polyhedron, longest: float, simplicial: bool = False) -> Bisection:
+def bisected(
+    polyhedron: Polyhedron, longest: float, simplicial: bool = False, flips: FlatFlips | None = None
+) -> Bisection:
     """The triangle mesh with edges halved until none is longer than `longest`; flat, watertight, same surface.
+
+    flips: of edges of the mesh, done before any is halved.
 
     simplicial: loops are halved too, and edges that share both ends with another one, until none is left; a map to X/H
     that is linear on each triangle needs that (see `doubled_edges`).
 
     An edge is halved when it is the longest of both its triangles, so that long thin triangles become rounder and no
     angle falls below half the least one of the mesh (Rivara 1984, 1997: longest-edge propagation). Deterministic:
-    of equal edges the one with the larger index is halved first. A face that meets itself along an edge is halved
-    across its third side first. Raises TopologyError for an open mesh, or a length
-    that is not positive.
+    of equal edges the one with the larger index is halved first. Where that takes many rounds, as round a vertex of
+    thousands of equal edges, edges count as equal that differ by less than a fifth, and a fixed mixture of the indices
+    decides. A face that meets itself along an edge is halved across its third side first. Raises TopologyError for an
+    open mesh, or a length that is not positive.
     """
     if not longest > 0:
         raise TopologyError(f"edges no longer than {longest} were asked for; the length must be positive")
     if (polyhedron.twin < 0).any():
         raise TopologyError("only a closed mesh is refined; `orbiframe info` lists its open edges")
-    state = _State(polyhedron, simplicial)
-    while len(edges := state.edges_to_halve(longest)):
+    state = _State(polyhedron if flips is None else flips.after, simplicial)
+    rounds = 0
+    while len(edges := state.edges_to_halve(longest, rounds > _PATIENCE)):
         state.halve(edges)
-    return state.result(polyhedron)
+        rounds += 1
+    return Bisection(polyhedron, state.mesh(), state.side, state.child, flips)
 
 
 def edge_length_for(polyhedron: Polyhedron, vertices: int) -> float:
@@ -139,6 +173,14 @@ def _triangles_made(sides: Floats, areas: Floats, longest: float) -> float:
     return float((3**slender * 4 ** (halvings - slender)).sum())
 
 
+def _mixed(index: Ints) -> NDArray[np.uint64]:
+    """Numbers in an order that has nothing to do with theirs (the finaliser of splitmix64)."""
+    z = index.astype(np.uint64)
+    for shift, factor in ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB)):
+        z = (z ^ (z >> np.uint64(shift))) * np.uint64(factor)
+    return z ^ (z >> np.uint64(31))
+
+
 class _State:
     """The mesh while it is being refined: vertices, triangles, twins, and the forest."""
 
@@ -151,8 +193,11 @@ class _State:
         self.side = np.full(mesh.face_count, -1, dtype=np.intp)
         self.child = np.arange(mesh.face_count)
 
-    def edges_to_halve(self, longest: float) -> Ints:
-        """One halfedge of each edge that must be halved and comes first in both its triangles."""
+    def edges_to_halve(self, longest: float, roughly: bool = False) -> Ints:
+        """One halfedge of each edge that must be halved and comes first in both its triangles.
+
+        roughly: by steps of the length and in mixed order, so that many come first at once.
+        """
         head = np.roll(self.triangles, -1, axis=1)
         length = np.linalg.norm(self.vertices[head] - self.vertices[self.triangles], axis=2).ravel()
         index = np.arange(len(length))
@@ -170,7 +215,8 @@ class _State:
         loop = head.ravel() == self.triangles.ravel()
         urgency = np.where(folded, -1, 4 * first + 2 * (doubled & loop) + doubled)
         rank = np.empty(len(length), dtype=np.intp)
-        rank[np.lexsort((edge, length, urgency))] = index
+        size, order = (np.rint(4 * np.log2(np.maximum(length, 1e-300))), _mixed(edge)) if roughly else (length, edge)
+        rank[np.lexsort((edge, order, size, urgency))] = index
         rank = np.maximum(rank, rank[self.twin])
         top = np.zeros(len(length), dtype=np.bool_)
         top[3 * np.arange(len(self.triangles)) + rank.reshape(-1, 3).argmax(axis=1)] = True
@@ -180,7 +226,7 @@ class _State:
         """The halfedges that must go from a simplicial complex; once it is one, halving keeps it so."""
         if not self.made_simplicial:
             return np.zeros(len(self.twin), dtype=np.bool_)
-        doubled = doubled_edges(self._mesh())
+        doubled = doubled_edges(self.mesh())
         self.made_simplicial = bool(doubled.any()) or len(self.triangles) == 2
         return doubled
 
@@ -237,9 +283,6 @@ class _State:
             same[mine] = same[theirs] = parallel
         self.twin, self.same = twin, same
 
-    def _mesh(self) -> Polyhedron:
+    def mesh(self) -> Polyhedron:
         offsets = np.arange(len(self.triangles) + 1) * 3
         return Polyhedron(self.vertices, offsets, self.triangles.ravel(), self.twin, self.same)
-
-    def result(self, coarse: Polyhedron) -> Bisection:
-        return Bisection(coarse, self._mesh(), self.side, self.child)

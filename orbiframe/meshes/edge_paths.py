@@ -133,6 +133,22 @@ def curve_order(x: Floats) -> Ints:
 
 
 @compiled
+def _claim(start, neighbour, length, vertex, number, distance, owner):  # type: ignore[no-untyped-def]
+    """Give a vertex all vertices that are nearer to it than they are now: their distance and owner."""
+    distance[vertex], owner[vertex] = 0.0, number
+    queue = [(0.0, vertex)]
+    while queue:
+        near, i = heapq.heappop(queue)
+        if near > distance[i]:
+            continue
+        for k in range(start[i], start[i + 1]):
+            j, far = neighbour[k], near + length[k]
+            if far < distance[j]:
+                distance[j], owner[j] = far, number
+                heapq.heappush(queue, (far, j))
+
+
+@compiled
 def _farthest(start, neighbour, length, count, first, radius):  # type: ignore[no-untyped-def]
     size = len(start) - 1
     distance, owner = np.full(size, np.inf), np.full(size, -1)
@@ -142,17 +158,7 @@ def _farthest(start, neighbour, length, count, first, radius):  # type: ignore[n
     found, vertex = 0, first
     while found < len(chosen):
         chosen[found] = vertex
-        distance[vertex], owner[vertex] = 0.0, found
-        queue = [(0.0, vertex)]
-        while queue:
-            near, i = heapq.heappop(queue)
-            if near > distance[i]:
-                continue
-            for k in range(start[i], start[i + 1]):
-                j, far = neighbour[k], near + length[k]
-                if far < distance[j]:
-                    distance[j], owner[j] = far, found
-                    heapq.heappush(queue, (far, j))
+        _claim(start, neighbour, length, vertex, found, distance, owner)
         found += 1
         top, vertex = waiting[0]
         while -top != distance[vertex]:
@@ -165,24 +171,23 @@ def _farthest(start, neighbour, length, count, first, radius):  # type: ignore[n
 
 @compiled
 def _covering(start, neighbour, length, radius):  # type: ignore[no-untyped-def]
-    distance = np.full(len(start) - 1, radius)
+    distance, owner = np.full(len(start) - 1, radius), np.full(len(start) - 1, -1)
     chosen = [np.intp(0) for _ in range(0)]
     for vertex in range(len(start) - 1):
         if distance[vertex] < radius:
             continue
         chosen.append(np.intp(vertex))
-        distance[vertex] = 0.0
-        queue = [(0.0, vertex)]
-        while queue:
-            near, i = heapq.heappop(queue)
-            if near > distance[i]:
-                continue
-            for k in range(start[i], start[i + 1]):
-                j, far = neighbour[k], near + length[k]
-                if far < distance[j]:
-                    distance[j] = far
-                    heapq.heappush(queue, (far, j))
+        _claim(start, neighbour, length, vertex, vertex, distance, owner)
     return np.array(chosen)
+
+
+@compiled
+def _top(above, i):  # type: ignore[no-untyped-def]
+    """The first of the part that i belongs to; the way there becomes half as long."""
+    while above[i] != i:
+        above[i] = above[above[i]]
+        i = above[i]
+    return i
 
 
 @compiled
@@ -190,13 +195,7 @@ def _joining(count, tail, head):  # type: ignore[no-untyped-def]
     above = np.arange(count)
     joins = np.zeros(len(tail), dtype=np.bool_)
     for edge in range(len(tail)):
-        i, j = tail[edge], head[edge]
-        while above[i] != i:
-            above[i] = above[above[i]]
-            i = above[i]
-        while above[j] != j:
-            above[j] = above[above[j]]
-            j = above[j]
+        i, j = _top(above, tail[edge]), _top(above, head[edge])
         if i != j:
             above[max(i, j)] = min(i, j)
             joins[edge] = True

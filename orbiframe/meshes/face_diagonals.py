@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.compiled.decorator import compiled
 from orbiframe.errors import TopologyError
+from orbiframe.meshes.cut import Cut
+from orbiframe.meshes.face_plane import in_its_plane
 from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.meshes.sizes import vector_areas
+from orbiframe.meshes.shared_diagonals import without_shared_diagonals
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -24,38 +27,43 @@ def triangulated(polyhedron: Polyhedron) -> Polyhedron:
     A quadrilateral gets the diagonal whose two triangles face the same way as the quadrilateral (so a concave one is
     cut through its reflex corner), then the shorter one, then the one through the smaller vertex index. Larger faces
     lose their ear with the shortest diagonal, again and again, in the plane of their vector area. Triangles follow
-    the order of the faces. No vertex is added, and diagonals become twins even where an edge with the same ends
-    exists. Complexity: linear for quadrilaterals, about quadratic in the corners of larger faces. Raises TopologyError
-    for a face of fewer than three corners.
+    the order of the faces.
+
+    No diagonal has the ends of an edge or of another diagonal: a later one is exchanged for the other diagonal of its
+    quadrilateral, and where that is not free, or would leave the face, it gets a point in its middle, a new vertex
+    after the others. So a surface that is closed by the vertices of its faces stays closed by them. Complexity: about
+    n log n in the corners. Raises TopologyError for a face of fewer than three corners.
     """
     if polyhedron.is_triangular:
         return polyhedron
-    small = np.flatnonzero(polyhedron.face_sizes < 3)
-    if len(small):
-        corners = polyhedron.face_sizes[small[0]]
-        raise TopologyError(f"face {small[0]} has {corners} corners, a polygon needs three; remove it from the mesh")
-    return _glued(polyhedron, triangle_corners(polyhedron))
-
-
-def triangle_owner(polyhedron: Polyhedron) -> Ints:
-    """The face that each triangle of `triangulated(polyhedron)` comes from, (T,)."""
-    return np.repeat(np.arange(polyhedron.face_count), polyhedron.face_sizes - 2)
+    return _glued(cut_into_triangles(polyhedron))
 
 
 def outline(polyhedron: Polyhedron) -> Ints:
     """The halfedge of `triangulated(polyhedron)` that is each halfedge of the polyhedron, (H,)."""
-    corners = triangle_corners(polyhedron)
-    start, end = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
-    old = np.flatnonzero(polyhedron.next[start] == end)
+    cut = cut_into_triangles(polyhedron)
+    old = np.flatnonzero(cut.on_outline)
     place = np.empty(len(polyhedron.tail), dtype=np.intp)
-    place[start[old]] = old
+    place[cut.sides[0][old]] = old
     return place
 
 
-def triangle_corners(polyhedron: Polyhedron) -> Ints:
-    """The triangles of `triangulated(polyhedron)` as corners (halfedges) of the polyhedron, (T, 3)."""
+def cut_into_triangles(polyhedron: Polyhedron) -> Cut:
+    """The triangles of `triangulated(polyhedron)` as corners of the polyhedron, and the points between them."""
+    none = np.empty((0, 2), dtype=np.intp)
     if polyhedron.is_triangular:
-        return np.arange(len(polyhedron.tail)).reshape(-1, 3)
+        faces = np.arange(polyhedron.face_count)
+        return Cut(polyhedron, np.arange(len(polyhedron.tail)).reshape(-1, 3), faces, none)
+    small = np.flatnonzero(polyhedron.face_sizes < 3)
+    if len(small):
+        corners = polyhedron.face_sizes[small[0]]
+        raise TopologyError(f"face {small[0]} has {corners} corners, a polygon needs three; remove it from the mesh")
+    face = np.repeat(np.arange(polyhedron.face_count), polyhedron.face_sizes - 2)
+    return without_shared_diagonals(Cut(polyhedron, _by_diagonals(polyhedron), face, none))
+
+
+def _by_diagonals(polyhedron: Polyhedron) -> Ints:
+    """The triangles of all faces, (T, 3), each face cut as if it were alone."""
     sizes = polyhedron.face_sizes
     first = np.concatenate([[0], np.cumsum(sizes - 2)])
     corners = np.empty((first[-1], 3), dtype=np.intp)
@@ -66,10 +74,11 @@ def triangle_corners(polyhedron: Polyhedron) -> Ints:
     start = polyhedron.offsets[quads][:, None]
     corners[first[quads]] = start + (np.array([0, 1, 2]) + turn) % 4
     corners[first[quads] + 1] = start + (np.array([0, 2, 3]) + turn) % 4
-    normals = vector_areas(polyhedron)
     for face in map(int, np.flatnonzero(sizes > 4)):
-        flat = _flattened(polyhedron.vertices[polyhedron.face_corners(face)], normals[face])
-        corners[first[face] : first[face + 1]] = polyhedron.offsets[face] + _cut_ears(flat)
+        from orbiframe.meshes.ear_clipping import cut_ears
+
+        flat = in_its_plane(polyhedron.vertices[polyhedron.face_corners(face)])
+        corners[first[face] : first[face + 1]] = polyhedron.offsets[face] + cut_ears(flat)[0]
     return corners
 
 
@@ -89,97 +98,36 @@ def _quad_turns(polyhedron: Polyhedron, quads: Ints) -> Ints:
     return np.asarray(np.where(worst[0] == worst[1], shorter, worst[1]), dtype=np.intp)
 
 
-def _flattened(points: Floats, normal: Floats) -> Floats:
-    """The corners of a face in coordinates of the plane across its normal, (n, 2), counterclockwise."""
-    size = float(np.linalg.norm(normal))
-    n = normal / size if size > 0 else np.array([0.0, 0.0, 1.0])
-    axis = np.eye(3)[np.argmin(np.abs(n))]
-    u = np.cross(axis, n)
-    u /= np.linalg.norm(u)
-    centred = points - points.mean(axis=0)
-    return np.stack([centred @ u, centred @ np.cross(n, u)], axis=1)
-
-
-@compiled
-def _cross(a: Floats, b: Floats, c: Floats) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])  # type: ignore[no-any-return]
-
-
-@compiled
-def _is_ear(p: Floats, before: Ints, after: Ints, ear: int) -> bool:
-    a, b, c = before[ear], ear, after[ear]
-    if _cross(p[a], p[b], p[c]) <= 0.0:
-        return False
-    other = after[c]
-    while other != a:
-        inside = (
-            _cross(p[a], p[b], p[other]) >= 0.0
-            and _cross(p[b], p[c], p[other]) >= 0.0
-            and _cross(p[c], p[a], p[other]) >= 0.0
-        )
-        if inside:
-            return False
-        other = after[other]
-    return True
-
-
-@compiled
-def _shortest_ear(p: Floats, before: Ints, after: Ints, start: int, checked: bool) -> int:
-    best, best_length, ear = -1, np.inf, start
-    while True:
-        a, c = before[ear], after[ear]
-        length = (p[a, 0] - p[c, 0]) ** 2 + (p[a, 1] - p[c, 1]) ** 2
-        if length < best_length * (1.0 - 1e-9) and (not checked or _is_ear(p, before, after, ear)):
-            best, best_length = ear, length
-        ear = after[ear]
-        if ear == start:
-            return best
-
-
-@compiled
-def _cut_ears(p: Floats) -> Ints:
-    """Triangles (n - 2, 3) of a polygon (n, 2); where no ear is left (a crossing polygon) the shortest cut is taken."""
-    n = len(p)
-    before, after = np.arange(-1, n - 1), np.arange(1, n + 1)
-    before[0], after[n - 1] = n - 1, 0
-    triangles = np.empty((n - 2, 3), dtype=np.intp)
-    start = 0
-    for t in range(n - 2):
-        ear = _shortest_ear(p, before, after, start, True)
-        if ear < 0:
-            ear = _shortest_ear(p, before, after, start, False)
-        if ear < 0:
-            ear = start
-        a, c = before[ear], after[ear]
-        triangles[t, 0], triangles[t, 1], triangles[t, 2] = a, ear, c
-        after[a], before[c] = c, a
-        start = c
-    return triangles
-
-
-def _glued(polyhedron: Polyhedron, corners: Ints) -> Polyhedron:
+def _glued(cut: Cut) -> Polyhedron:
     """The triangles with their twins: old edges keep theirs, the two sides of a diagonal find each other."""
-    start = corners.ravel()
-    end = np.roll(corners, -1, axis=1).ravel()
-    size = len(start)
-    old = polyhedron.next[start] == end
-    place = np.full(len(polyhedron.tail) + 1, -1, dtype=np.intp)
+    mesh, (start, end), old = cut.polyhedron, cut.sides, cut.on_outline
+    place = np.full(len(mesh.tail) + 1, -1, dtype=np.intp)
     place[start[old]] = np.flatnonzero(old)
-    twin = np.full(size, -1, dtype=np.intp)
-    twin[old] = place[polyhedron.twin[start[old]]]
-    same = np.zeros(size, dtype=np.bool_)
-    same[old] = polyhedron.same[start[old]]
-    cut = np.flatnonzero(~old)
-    order = cut[np.lexsort((np.maximum(start, end)[cut], np.minimum(start, end)[cut]))]
+    twin = np.full(len(start), -1, dtype=np.intp)
+    twin[old] = place[mesh.twin[start[old]]]
+    same = np.zeros(len(start), dtype=np.bool_)
+    same[old] = mesh.same[start[old]]
+    inner = np.flatnonzero(~old)
+    order = inner[np.lexsort((np.maximum(start, end)[inner], np.minimum(start, end)[inner]))]
     twin[order[0::2]], twin[order[1::2]] = order[1::2], order[0::2]
-    owner = triangle_owner(polyhedron)
-    return Polyhedron(
-        polyhedron.vertices,
-        np.arange(len(corners) + 1) * 3,
-        polyhedron.tail[start],
-        twin,
-        same,
-        polyhedron.normals,
-        polyhedron.colors,
-        None if polyhedron.face_colors is None else polyhedron.face_colors[owner],
+    return replace(
+        mesh,
+        vertices=_grown_rows(mesh.vertices, cut),
+        offsets=np.arange(len(cut.corners) + 1) * 3,
+        tail=cut.vertex[start],
+        twin=twin,
+        same=same,
+        normals=_grown(mesh.normals, cut),
+        colors=_grown(mesh.colors, cut),
+        face_colors=None if mesh.face_colors is None else mesh.face_colors[cut.face],
     )
+
+
+def _grown(table: Floats | None, cut: Cut) -> Floats | None:
+    return None if table is None else _grown_rows(table, cut)
+
+
+def _grown_rows(table: Floats, cut: Cut) -> Floats:
+    """A table of the vertices with rows for the new ones, the means of the two that each lies between."""
+    ends = cut.polyhedron.tail[cut.between]
+    return np.concatenate([table, table[ends[:, 0]] / 2 + table[ends[:, 1]] / 2])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.meshes.face_diagonals import triangle_corners
+from orbiframe.meshes.face_diagonals import cut_into_triangles
 from orbiframe.meshes.polyhedron import Polyhedron
 
 Floats = NDArray[np.float64]
@@ -17,9 +17,8 @@ def regular_triangles(polyhedron: Polyhedron) -> Floats:
     All sides have length 1 and corners run counterclockwise, so that the triangles of neighbouring faces fit along
     their common edge: together they are a surface with a flat metric and cones at the vertices.
     """
-    corners = triangle_corners(polyhedron)
-    face = polyhedron.face[corners]
-    size = polyhedron.face_sizes[face]
-    turn = 2 * np.pi * (corners - polyhedron.offsets[face]) / size
+    cut = cut_into_triangles(polyhedron)
+    size = polyhedron.face_sizes[polyhedron.face]
+    turn = 2 * np.pi * (np.arange(len(polyhedron.tail)) - polyhedron.offsets[polyhedron.face]) / size
     radius = 0.5 / np.sin(np.pi / size)
-    return np.stack([radius * np.cos(turn), radius * np.sin(turn)], axis=-1)
+    return cut.with_middles(np.stack([radius * np.cos(turn), radius * np.sin(turn)], axis=-1))[cut.corners]

@@ -22,6 +22,7 @@ from orbiframe.meshes.orientation import face_components, oriented, reversed_fac
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import signed_volume
 from orbiframe.meshes.surface_type import surface_type, without_unused_vertices
+from orbiframe.meshes.told_by_ends import as_in_a_file, require_told_by_ends
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -160,13 +161,19 @@ def orient(polyhedron: Polyhedron) -> Repair:
 
 
 def triangulate(polyhedron: Polyhedron) -> Repair:
-    """Every face cut into triangles by diagonals, without new vertices, see `diagonals.triangulated`."""
+    """Every face cut into triangles by diagonals, see `face_diagonals.triangulated`.
+
+    Raises TopologyError where the triangles would be another surface once they are in a file.
+    """
     larger = int((polyhedron.face_sizes > 3).sum())
     triangles = triangulated(polyhedron)
     if not larger:
         return Repair(polyhedron, f"all faces are triangles; {NOTHING}")
+    require_told_by_ends(triangles, surface_type(as_in_a_file(polyhedron)))
     cut = triangles.face_count - polyhedron.face_count + larger
-    return Repair(triangles, f"{_counted(larger, 'faces')} of more than 3 corners cut into {cut} triangles")
+    fresh = len(triangles.vertices) - len(polyhedron.vertices)
+    points = f", with {_counted(fresh, 'vertices')} more on diagonals" if fresh else ""
+    return Repair(triangles, f"{_counted(larger, 'faces')} of more than 3 corners cut into {cut} triangles{points}")
 
 
 # ---- faces --------------------------------------------------------------------------------------------------------

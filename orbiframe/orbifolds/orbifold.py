@@ -9,7 +9,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from orbiframe.orbifolds.atlas import Atlas
+from orbiframe.orbifolds.atlas import Atlas, Points
 from orbiframe.planes.geometry import Geometry
 
 Floats = NDArray[np.float64]
@@ -67,34 +67,53 @@ class Orbifold:
         """The lifts of many patches at once: those of patches[i] within radii[i] have base i and stand together.
 
         The walk goes from a copy g to its neighbours g h, h a transition, as long as their origins stay within the
-        radius plus the largest radius of a patch. That finds every copy if X is tiled by polygons, one in each copy and
+        radius plus the radius of their patch. That finds every copy if X is tiled by polygons, one in each copy and
         within the radius of its patch, and a transition joins any two polygons with a common side: the geodesic from
         origin to origin runs through a chain of neighbours that all come as near. (Where it runs through a corner, one
         beside it does not.) In S^2 no distance exceeds pi, and a large radius visits the whole finite group.
         """
         base, reach = np.asarray(patches, dtype=np.intp), np.asarray(radii, dtype=np.float64)
-        limit = reach + self.atlas.radius.max()
         origin = self.geometry.origin
         levels = []
-        for level in self._walk(base, limit):
+        for level in self._walk(base, reach):
             levels.append(level.take(self.geometry.distance(origin, level.isometry[:, :, 0]) <= reach[level.base]))
         found = Copies(*(np.concatenate([getattr(x, name) for x in levels]) for name in ("base", "patch", "isometry")))
         return found.take(np.argsort(found.base, kind="stable"))
 
-    def _walk(self, patches: Ints, limit: Floats) -> Iterator[Copies]:
+    def settled(self, points: Points) -> Points:
+        """The same points of X/H, each in the frame of a patch to whose origin no neighbouring one is nearer.
+
+        Points that have been moved on X and left their patch walk from patch to patch, downhill.
+        """
+        patch, x = np.array(points.patch, dtype=np.intp), np.array(points.x, dtype=np.float64)
+        far = np.flatnonzero(self.geometry.distance(self.geometry.origin, x) > self.atlas.radius[patch])
+        while len(far):
+            parent, step = self.steps(patch[far])
+            place = self.geometry.act(self.atlas.isometry[self.atlas.inverse[step]], x[far[parent]])
+            away = self.geometry.distance(self.geometry.origin, place)
+            order = np.lexsort((away, parent))
+            best = order[np.unique(parent[order], return_index=True)[1]]
+            far = far[parent[best]]
+            nearer = away[best] < self.geometry.distance(self.geometry.origin, x[far]) * (1 - 1e-9)
+            far, best = far[nearer], best[nearer]
+            patch[far], x[far] = self.atlas.head[step[best]], self.geometry.settle(place[best])
+        return Points(patch, x)
+
+    def _walk(self, patches: Ints, reach: Floats) -> Iterator[Copies]:
         """Breadth first, level by level: a neighbour lies in the level itself, the one before or the next."""
         level = Copies(np.arange(len(patches)), patches, np.tile(np.eye(3), (len(patches), 1, 1)))
         before = level.take(np.zeros(0, dtype=np.intp))
         while len(level.base):
             yield level
-            before, level = level, self._next_level(before, level, limit)
+            before, level = level, self._next_level(before, level, reach)
 
-    def _next_level(self, before: Copies, level: Copies, limit: Floats) -> Copies:
-        """The neighbours of a level that lie within the limit and are new."""
+    def _next_level(self, before: Copies, level: Copies, reach: Floats) -> Copies:
+        """The neighbours of a level that come within reach and are new."""
         atlas = self.atlas
         parent, step = self.steps(level.patch)
         place = np.einsum("kij,kj->ki", level.isometry[parent], atlas.isometry[step, :, 0])
-        near = self.geometry.distance(self.geometry.origin, place) <= limit[level.base[parent]]
+        limit = reach[level.base[parent]] + atlas.radius[atlas.head[step]]
+        near = self.geometry.distance(self.geometry.origin, place) <= limit
         parent, step, place = parent[near], step[near], place[near]
         base, patch = level.base[parent], atlas.head[step]
         known = len(before.base) + len(level.base)

@@ -36,8 +36,11 @@ class Geometry(ABC):
         """A point of X that has drifted by rounding, put back: H^2 and E^2 recompute x0 from (x1, x2), S^2 scales."""
 
     @abstractmethod
-    def inner(self, v: ArrayLike, w: ArrayLike) -> Floats:
-        """The Riemannian scalar product (...) of tangent vectors at one point; positive definite on tangent vectors."""
+    def inner(self, x: ArrayLike, v: ArrayLike, w: ArrayLike) -> Floats:
+        """The Riemannian scalar product (...) of tangent vectors v and w at x, to as many digits as these have.
+
+        A vector at distance D from the origin of H^2 that is known to eps of its largest entry has an error of eps e^D.
+        """
 
     @abstractmethod
     def versine(self, x: ArrayLike, y: ArrayLike) -> Floats:
@@ -97,9 +100,9 @@ class Geometry(ABC):
         return np.asarray(moved)
 
     @final
-    def norm(self, v: ArrayLike) -> Floats:
-        """Length (...) of tangent vectors."""
-        return np.asarray(np.sqrt(np.maximum(self.inner(v, v), 0.0)))
+    def norm(self, x: ArrayLike, v: ArrayLike) -> Floats:
+        """Length (...) of tangent vectors v at x."""
+        return np.asarray(np.sqrt(np.maximum(self.inner(x, v, v), 0.0)))
 
     @final
     def frame(self, x: ArrayLike) -> Floats:
@@ -126,7 +129,7 @@ class Geometry(ABC):
     def flag(self, x: ArrayLike, v: ArrayLike) -> Floats:
         """The isometry that takes the origin to x and the direction (0, 1, 0) to that of the tangent vector v at x."""
         base, velocity = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(v, dtype=float))
-        ahead = velocity / self.norm(velocity)[..., None]
+        ahead = velocity / self.norm(base, velocity)[..., None]
         return np.stack([base, ahead, self.turn(base, ahead)], axis=-1)
 
     @final
@@ -202,7 +205,7 @@ class Geometry(ABC):
     def angle(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Floats:
         """The angle (...) at x from the geodesic to y to the geodesic to z, counterclockwise, in (-pi, pi]."""
         base, first, second = np.asarray(x, dtype=float), self.log(x, y), self.log(x, z)
-        return np.asarray(np.arctan2(self.inner(self.turn(base, first), second), self.inner(first, second)))
+        return np.asarray(np.arctan2(self.inner(base, self.turn(base, first), second), self.inner(base, first, second)))
 
     @final
     def triangle_area(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Floats:

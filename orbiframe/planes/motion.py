@@ -73,20 +73,44 @@ def _spherical_motion(g: Floats, inverse: Floats, parity: int, small: float, spi
 
 
 def _hyperbolic_motion(g: Floats, inverse: Floats, parity: int, small: float, spin: Floats, cosine: float) -> Motion:
-    square, size = _form(spin), float(np.abs(spin).max())
-    # spin is known up to `small`, hence its square up to small times size.
-    if parity > 0 and cosine > 0 and abs(square) <= 4 * small * size:
+    """By sin^2 or -sinh^2, from the trace or from the spin, whichever rounding leaves more of.
+
+    The trace is known up to `small` wherever the axis lies, the form of the spin up to small times its size: the first
+    serves far from the origin, the second near the identity.
+    """
+    by_trace, by_spin = (1 - cosine) * (1 + cosine), _form(spin)
+    doubt, other = 2 * small * max(1.0, abs(cosine)), 4 * small * float(np.abs(spin).max())
+    square, doubt = (by_spin, other) if other <= doubt else (by_trace, doubt)
+    sine = float(np.sqrt(abs(square)))
+    if parity > 0 and cosine > 0 and abs(square) <= doubt:
         return Motion("parabolic", point=spin / spin[0])
     if parity > 0 and (cosine < 0 or square > 0):
-        point = spin if cosine > 0 else _fixed_vector(g, inverse, cosine)
-        point = np.copysign(1.0, point[0]) * point / np.sqrt(_form(point))
-        return Motion("rotation", float(np.arctan2(_dot(spin, point), cosine)), point=point)
-    pole = spin if parity > 0 else _fixed_vector(g, inverse, cosine)
-    pole = pole / np.sqrt(-_form(pole))
-    line, length = pole * [1.0, -1.0, -1.0], float(np.arcsinh(np.sqrt(max(-square, 0.0))))
+        return _hyperbolic_rotation(g, inverse, spin, sine, cosine)
+    length = float(np.arcsinh(sine)) if square < 0 else 0.0
+    pole = spin / sine if parity > 0 else _reversed_vector(g, inverse, cosine)
+    line = pole * [1.0, -1.0, -1.0]
     if parity > 0:
         return Motion("translation", length=length, line=line)
     return Motion("reflection", line=line) if length <= small else Motion("glide", length=length, line=line)
+
+
+def _hyperbolic_rotation(g: Floats, inverse: Floats, spin: Floats, sine: float, cosine: float) -> Motion:
+    """The spin is the sine times the centre x, and (g + g^-1) / 2 - cos is (1 - cos) x x^T J."""
+    turned = np.copysign(sine, spin[0])
+    if cosine > 0:
+        point = spin / turned
+    else:
+        column = ((g + inverse) / 2 - cosine * np.eye(3))[:, 0]
+        point = column / np.sqrt(column[0] * (1 - cosine))
+    point[0] = np.sqrt(1 + point[1] ** 2 + point[2] ** 2)
+    return Motion("rotation", float(np.arctan2(turned, cosine)), point=point)
+
+
+def _reversed_vector(g: Floats, inverse: Floats, cosine: float) -> Floats:
+    """The unit vector n that a glide reverses: (g + g^-1) / 2 - cosh = (1 + cosh) n n^T J, J = diag(1, -1, -1)."""
+    scaled = ((g + inverse) / 2 - cosine * np.eye(3)) * [1.0, -1.0, -1.0]
+    k = int(np.argmax(np.diag(scaled)))
+    return np.asarray(scaled[:, k] / np.sqrt(scaled[k, k] * (1 + cosine)))
 
 
 def _fixed_vector(g: Floats, inverse: Floats, cosine: float) -> Floats:
@@ -96,8 +120,4 @@ def _fixed_vector(g: Floats, inverse: Floats, cosine: float) -> Floats:
 
 
 def _form(x: Floats) -> float:
-    return _dot(x, x)
-
-
-def _dot(x: Floats, y: Floats) -> float:
-    return float(x[0] * y[0] - x[1] * y[1] - x[2] * y[2])
+    return float(x[0] ** 2 - x[1] ** 2 - x[2] ** 2)

@@ -13,7 +13,7 @@ from orbiframe.errors import FitError
 from orbiframe.functions.basis import Basis, DifferentiableBasis
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.meshes.subdivision import refine
+from orbiframe.meshes.told_by_ends import refined_by_ends
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.planes.quadrature import triangle_points
@@ -114,14 +114,18 @@ class OrbifoldSurface:
             total += float(np.abs(weights).ravel() @ (bent.gaussian * bent.element))
         return total
 
-    def tessellate(self, density: int = 1) -> Polyhedron:
+    def tessellate(self, density: int = 1, *, bisected: bool = False) -> Polyhedron:
         """A triangle mesh on the surface with normals: every triangle of the input in density^2 triangles.
 
-        Watertight and of the topology of the input: every vertex is evaluated once, and the faces are glued as those
-        of the input are. Normals point to the side from which the faces run counterclockwise.
+        bisected: every triangle of the refined mesh instead, so that triangles are even in size and small where the
+        input is thin. Watertight and of the topology of the input: every vertex is evaluated once, and the faces are
+        glued as those of the input are. Where a file could not tell the edges by their ends, triangles are halved
+        first, see `refined_by_ends`. Normals point to the side from which the faces run counterclockwise.
         """
-        mesh = refine(self.refinement.coarse, density)
-        face, barycentric = self.refinement.locate(mesh.face, mesh.barycentric)
+        mesh = refined_by_ends(self.triangulation.polyhedron if bisected else self.refinement.coarse, density)
+        face, barycentric = mesh.face, mesh.barycentric
+        if not bisected:
+            face, barycentric = self.refinement.locate(face, barycentric)
         points = self.triangulation.locate(face, barycentric)
         if not isinstance(self.basis, DifferentiableBasis):
             return mesh.polyhedron.with_vertices(self.evaluate(points))

@@ -27,7 +27,7 @@ def constants_are_reproduced(component: Component, lab: Lab) -> None:
     """Constant data in a space that contains the constants gives that constant, however strongly a fitter smooths."""
     for case in _cases(lab):
         fitted = case.matrix @ component().fit(case.basis, case.with_values(np.full((_COUNT, 2), 3.0)))
-        assert np.abs(fitted - 3).max() < 1e-6, f"3 becomes {fitted[np.abs(fitted - 3).argmax()]}"
+        assert np.abs(fitted - 3).max() < 1e-6, f"3 becomes {fitted.flat[np.abs(fitted - 3).argmax()]}"
 
 
 def smooth_data_in_the_span_is_nearly_reproduced(component: Component, lab: Lab) -> None:

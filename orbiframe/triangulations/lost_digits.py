@@ -22,8 +22,8 @@ def crowding_of(triangulation: Triangulation) -> Crowding:
 
     A finger of length L and radius r is mapped to a disc that is smaller than its root by about exp(-L/r), with any
     map that hardly distorts angles. Coordinates have 16 digits; of these a triangle loses the first ones, those in
-    which its corners agree: the logarithm of the distance from the origin of the patch (on the sphere 1) over the
-    shortest edge. The largest loss of all triangles counts.
+    which its corners agree: the logarithm of the distance from the origin of the patch over the shortest edge. The
+    largest loss of all triangles counts.
     """
     areas = np.abs(triangulation.areas)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -34,9 +34,9 @@ def crowding_of(triangulation: Triangulation) -> Crowding:
 
 def _distances(triangulation: Triangulation) -> NDArray[np.float64]:
     """How large the coordinates of the corners of every triangle are that are not near to 1 anyway, (F,)."""
-    if triangulation.orbifold.geometry.curvature > 0:
-        return np.ones(triangulation.polyhedron.face_count)
-    return np.asarray(np.linalg.norm(triangulation.lifts[..., 1:], axis=-1).max(axis=1))
+    far = np.linalg.norm(triangulation.lifts[..., 1:], axis=-1)
+    # On the far half of S^2 no small number is near to the origin.
+    return np.asarray(np.where(triangulation.lifts[..., 0] < 0, 1.0, far).max(axis=1))
 
 
 def _shortest_edges(triangulation: Triangulation) -> NDArray[np.float64]:

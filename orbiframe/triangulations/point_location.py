@@ -130,31 +130,45 @@ def require_found(failed: int, points: Points, order: Ints | None = None) -> Non
         )
 
 
+@compiled(may_divide_by_zero=True, inline=True)
+def _way_out(inverse, face, x0, x1, x2):  # type: ignore[no-untyped-def]
+    """The barycentric coordinates of a point, and the edge that it is farthest beyond; -1: inside, -2: not finite."""
+    a = inverse[face, 0, 0] * x0 + inverse[face, 0, 1] * x1 + inverse[face, 0, 2] * x2
+    b = inverse[face, 1, 0] * x0 + inverse[face, 1, 1] * x1 + inverse[face, 1, 2] * x2
+    c = inverse[face, 2, 0] * x0 + inverse[face, 2, 1] * x1 + inverse[face, 2, 2] * x2
+    total = abs(a + b + c)
+    least = min(a, min(b, c))
+    # Edge c lies opposite corner c + 2.
+    way = 1 if least == a else 2 if least == b else 0
+    if least >= -_ON_EDGE * total:
+        way = -1
+    elif not total < np.inf:
+        way = -2
+    return a, b, c, way
+
+
+@compiled(may_divide_by_zero=True, inline=True)
+def _carried(g, x0, x1, x2):  # type: ignore[no-untyped-def]
+    """g x, as three numbers."""
+    return (
+        g[0, 0] * x0 + g[0, 1] * x1 + g[0, 2] * x2,
+        g[1, 0] * x0 + g[1, 1] * x1 + g[1, 2] * x2,
+        g[2, 0] * x0 + g[2, 1] * x1 + g[2, 2] * x2,
+    )
+
+
 @compiled
 def _walk_one(face, columns, inverse, twin, across):  # type: ignore[no-untyped-def]
     """Move columns (3, m), the first a point, from triangle to triangle until it is inside; the last one, or -1."""
-    width = columns.shape[1]
     for _ in range(_MOST_STEPS):
-        worst, least, total = 0, np.inf, 0.0
-        for i in range(3):
-            height = (
-                inverse[face, i, 0] * columns[0, 0]
-                + inverse[face, i, 1] * columns[1, 0]
-                + inverse[face, i, 2] * columns[2, 0]
+        _, _, _, way = _way_out(inverse, face, columns[0, 0], columns[1, 0], columns[2, 0])
+        if way < 0:
+            return face if way == -1 else -1
+        edge = 3 * face + way
+        for k in range(columns.shape[1]):
+            columns[0, k], columns[1, k], columns[2, k] = _carried(
+                across[edge], columns[0, k], columns[1, k], columns[2, k]
             )
-            total += height
-            if height < least:
-                worst, least = i, height
-        if not np.isfinite(total):
-            return -1
-        if least >= -_ON_EDGE * abs(total):
-            return face
-        # Halfedge c lies opposite corner c + 2.
-        edge = 3 * face + (worst + 1) % 3
-        for k in range(width):
-            a, b, c = columns[0, k], columns[1, k], columns[2, k]
-            for i in range(3):
-                columns[i, k] = across[edge, i, 0] * a + across[edge, i, 1] * b + across[edge, i, 2] * c
         face = twin[edge] // 3
     return -1
 
@@ -175,23 +189,13 @@ def walk(face, x0, x1, x2, inverse, twin, across):  # type: ignore[no-untyped-de
     The face is -1 where no triangle holds the point.
     """
     for _ in range(_MOST_STEPS):
-        a = inverse[face, 0, 0] * x0 + inverse[face, 0, 1] * x1 + inverse[face, 0, 2] * x2
-        b = inverse[face, 1, 0] * x0 + inverse[face, 1, 1] * x1 + inverse[face, 1, 2] * x2
-        c = inverse[face, 2, 0] * x0 + inverse[face, 2, 1] * x1 + inverse[face, 2, 2] * x2
-        total = abs(a + b + c)
-        least = min(a, min(b, c))
-        if least >= -_ON_EDGE * total:
+        a, b, c, way = _way_out(inverse, face, x0, x1, x2)
+        if way == -1:
             return face, x0, x1, x2, a, b, c
-        if not total < np.inf:
+        if way < 0:
             break
-        # Halfedge c lies opposite corner c + 2.
-        edge = 3 * face + (1 if least == a else 2 if least == b else 0)
-        x0, x1, x2 = (
-            across[edge, 0, 0] * x0 + across[edge, 0, 1] * x1 + across[edge, 0, 2] * x2,
-            across[edge, 1, 0] * x0 + across[edge, 1, 1] * x1 + across[edge, 1, 2] * x2,
-            across[edge, 2, 0] * x0 + across[edge, 2, 1] * x1 + across[edge, 2, 2] * x2,
-        )
-        face = twin[edge] // 3
+        x0, x1, x2 = _carried(across[3 * face + way], x0, x1, x2)
+        face = twin[3 * face + way] // 3
     return -1, x0, x1, x2, 0.0, 0.0, 0.0
 
 

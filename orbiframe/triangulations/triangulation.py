@@ -26,7 +26,8 @@ class Triangulation:
     polyhedron: the triangle mesh in space, with its connectivity; patch: (V,) and points: (V, 3), where each vertex
     lies; transition: (H,), the lifted edge of halfedge h from i to j runs from points[i] to
     atlas.isometry[transition[h]] points[j] in the frame of the patch of i. group: where the group comes from, and
-    weights: which edge weights made the map, both in words for the report.
+    weights: which edge weights made the map, both in words for the report. density: (V,), how many functions there
+    should be per length at each vertex beyond what the map alone asks for, up to a factor; None: the same everywhere.
     """
 
     orbifold: Orbifold
@@ -36,6 +37,7 @@ class Triangulation:
     transition: Ints
     group: str = "given"
     weights: str = "none"
+    density: Floats | None = None
 
     @cached_property
     def corner_transitions(self) -> Ints:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from orbiframe import FitError, Geometry, Triangulation, UsageError
 from orbiframe.meshes import Spacing, dijkstra_forest, edge_graph, farthest_points, outermost_vertex
+from orbiframe.triangulations import site_lengths
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -19,10 +20,18 @@ def require_positive(basis: str, **options: float) -> None:
             raise UsageError(f"option {name} of the basis {basis} is {value}; it must be positive")
 
 
-def spread(triangulation: Triangulation, size: int) -> Spacing:
-    """Centres by 3D edge lengths, from the vertex farthest from the centroid on."""
+def require_share(basis: str, **options: float) -> None:
+    """Raises UsageError for an option that is no share of a whole."""
+    for name, value in options.items():
+        if not 0 <= value < 1:
+            raise UsageError(f"option {name} of the basis {basis} is {value}; it must be at least 0 and less than 1")
+
+
+def spread(triangulation: Triangulation, size: int, grading: float) -> Spacing:
+    """Centres by 3D edge lengths and the density of `site_density`, from the vertex farthest from the centroid on."""
     mesh = triangulation.polyhedron
-    spacing = farthest_points(edge_graph(mesh), size, first=outermost_vertex(mesh))
+    graph = edge_graph(mesh, site_lengths(triangulation, grading))
+    spacing = farthest_points(graph, size, first=outermost_vertex(mesh))
     if len(spacing.chosen) < size:
         raise FitError(
             f"{size} functions need as many distinct vertices as centres, and the mesh has {len(spacing.chosen)}; "

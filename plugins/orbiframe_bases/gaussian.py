@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from orbiframe import Orbifold, Points, Triangulation
 from orbiframe.functions import OrbitSumBasis
-from orbiframe_bases.centres import require_positive, spread, supports
+from orbiframe_bases.centres import require_positive, require_share, spread, supports
 
 Floats = NDArray[np.float64]
 
@@ -23,7 +23,8 @@ class Gaussian(OrbitSumBasis):
     size: how many functions; width: s^2 is the square of this times the area in X of the part of the surface that is
     nearest to the centre, smoothed over neighbouring parts, so that functions are narrow where the map squeezes the
     surface; reach: the support is the disc of area pi (reach s)^2, so c_max = (reach s)^2 / 2. Where that would leave
-    a part of some triangle uncovered, the function is made wider.
+    a part of some triangle uncovered, the function is made wider; grading: how much of their density follows the girth
+    of the surface, the rest is even.
 
     Raises UsageError for an option out of range, FitError if the mesh has fewer vertices than `size`.
     """
@@ -36,11 +37,13 @@ class Gaussian(OrbitSumBasis):
         triangulation: Triangulation,
         *,
         size: int = 1000,
-        width: float = 1.3,
+        width: float = 1.7,
         reach: float = 2.6,
+        grading: float = 0.3,
     ) -> None:
         require_positive("gaussian", size=size, width=width, reach=reach)
-        spacing = spread(triangulation, size)
+        require_share("gaussian", grading=grading)
+        spacing = spread(triangulation, size, grading)
         support = supports(triangulation, spacing, (reach * width) ** 2 / 2)
         centres = Points(triangulation.patch[spacing.chosen], triangulation.points[spacing.chosen])
         super().__init__(orbifold, centres, support)

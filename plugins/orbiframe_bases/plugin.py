@@ -85,3 +85,16 @@ def orbiframe_components() -> list[Component]:
             "polynomials of compact support with 2, 4 or 6 derivatives, as wide as the surface is sampled",
         ),
     ]
+
+
+@hookimpl
+def orbiframe_warm_up() -> list[str]:
+    """Each compiled way to evaluate; the other bases share these."""
+    return [
+        "fit double_torus.off -o out.ply --quiet --basis ps2",
+        "fit prism.off -o out.ply --quiet --basis ps2",
+        "fit double_torus.off -o out.ply --quiet --basis bernstein",
+        "fit double_torus.off -o out.ply --quiet --basis simplex",
+        "fit double_torus.off -o out.ply --quiet --basis dms",
+        "fit torus.off -o out.ply --quiet --basis tensor-bspline",
+    ]

@@ -130,30 +130,30 @@ def _moved(g, columns, here):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _emit(element, family, s, output, here, jets, entries, shape, product, out):  # type: ignore[no-untyped-def]
-    """The covariant jet of one output of an element at a point."""
+def _emit(knot_set, family, s, output, here, jets, entries, shape, product, out):  # type: ignore[no-untyped-def]
+    """The covariant jet of one output of a set of knots at a point."""
     factor, lead = family
     jet = jets[s]
     if len(lead):
-        _times_linear(lead[element, output], here, jet, entries, product)
+        _times_linear(lead[knot_set, output], here, jet, entries, product)
         jet = product
     _covariant(shape[0], shape[1], jet, out)
     for kind in range(len(out)):
-        out[kind] *= factor[element, output]
+        out[kind] *= factor[knot_set, output]
 
 
 @compiled
-def fill_columns(place, reach, elements, program, family, row_start, slots, values):  # type: ignore[no-untyped-def]
+def fill_columns(place, reach, knot_sets, program, family, row_start, slots, values):  # type: ignore[no-untyped-def]
     """The rows of design matrices: all functions that may be nonzero on the triangle of each point.
 
     place: number, triangle (n,), columns (n, 3, 3) (point and frame) of each point and (curvature, degree); reach:
-    `Reach` as arrays; elements: bounds, rows and heights; program: start, child, orders, outputs; family: factor (E,
+    `Reach` as arrays; knot_sets: bounds, rows and heights; program: start, child, orders, outputs; family: factor (E,
     outputs), and rows of linear functions (E, outputs, 3) or (0, 0, 3); slots: where the outputs of a candidate stand
     in its row; values: (kinds, nonzeros), zero before.
     """
     order, face, columns, shape = place
-    first, element, isometry = reach
-    bounds, rows, height = elements
+    first, knot_set, isometry = reach
+    bounds, rows, height = knot_sets
     start, child, orders, outputs = program
     kinds = len(values)
     entries = kinds if kinds < 12 else 10
@@ -161,7 +161,7 @@ def fill_columns(place, reach, elements, program, family, row_start, slots, valu
     here, product, out = np.empty((3, 4)), np.empty(entries), np.empty(kinds)
     for n in range(len(face)):
         for c in range(first[face[n]], first[face[n] + 1]):
-            e = element[c]
+            e = knot_set[c]
             _moved(isometry[c], columns[n], here)
             if not _reaches(bounds[e], here):
                 continue
@@ -175,11 +175,11 @@ def fill_columns(place, reach, elements, program, family, row_start, slots, valu
 
 
 @compiled
-def evaluate(place, reach, elements, program, family, column, coefficients, values):  # type: ignore[no-untyped-def]
+def evaluate(place, reach, knot_sets, program, family, column, coefficients, values):  # type: ignore[no-untyped-def]
     """Jets of functions with given coefficients (size, q): values (kinds, points, q), zero before."""
     order, face, columns, shape = place
-    first, element, isometry = reach
-    bounds, rows, height = elements
+    first, knot_set, isometry = reach
+    bounds, rows, height = knot_sets
     start, child, orders, outputs = program
     kinds, width = len(values), coefficients.shape[1]
     entries = kinds if kinds < 12 else 10
@@ -187,7 +187,7 @@ def evaluate(place, reach, elements, program, family, column, coefficients, valu
     here, product, out = np.empty((3, 4)), np.empty(entries), np.empty(kinds)
     for n in range(len(face)):
         for c in range(first[face[n]], first[face[n] + 1]):
-            e = element[c]
+            e = knot_set[c]
             _moved(isometry[c], columns[n], here)
             if not _reaches(bounds[e], here):
                 continue

@@ -16,34 +16,28 @@ Ints = NDArray[np.intp]
 
 # Overlaps narrower than this are no overlaps, and lifts nearer than this are one.
 _NARROW, _SAME_PLACE = 1e-12, 1e-6
+# Knots must lie this far above a plane through the origin.
+_LEAST_HEIGHT = 1e-6
 
 
 class Reach(NamedTuple):
     """For every triangle its candidates first[f] to first[f + 1] - 1: sets of knots that may reach it.
 
-    first: (F + 1,); element: (c,), the number of the set; isometry: (c, 3, 3), from the frame of the triangle to the
+    first: (F + 1,); knot_set: (c,), the number of the set; isometry: (c, 3, 3), from the frame of the triangle to the
     frame that the knots are in.
     """
 
     first: Ints
-    element: Ints
+    knot_set: Ints
     isometry: Floats
 
 
 def hull_bounds(domain: GeodesicTriangulation, knots: Floats) -> Floats:
     """Linear functions, (E, b, 3), not negative exactly on the cone of every set of knots (E, K, 3): its sides.
 
-    Cones with fewer sides than b have some repeated. Raises FitError where knots lie in no open half-space about their
-    mean: on a sphere with few triangles.
+    Cones with fewer sides than b have some repeated. Raises FitError where knots lie in no open half-space: on a sphere
+    with few triangles.
     """
-    geometry = domain.geometry
-    mean = geometry.project(knots.sum(axis=1))
-    heights = np.einsum("ei,eki->ek", mean * [1.0, geometry.curvature, geometry.curvature], knots)
-    if not (heights > 1e-6).all():
-        raise FitError(
-            f"the knots of simplex spline {np.argwhere(~(heights > 1e-6))[0, 0]} lie in no half-space; the "
-            "triangles are too large for the sphere: take more of them (option size)"
-        )
     first, second = np.array(list(combinations(range(knots.shape[1]), 2))).T
     p, q = knots[:, first], knots[:, second]
     normal = np.cross(p, q - p)
@@ -53,9 +47,27 @@ def hull_bounds(domain: GeodesicTriangulation, knots: Floats) -> Floats:
     left, right = (inside >= -_NARROW).all(axis=2), (inside <= _NARROW).all(axis=2)
     is_side = (left ^ right) & (size[..., 0] > 0)
     normal = np.where(left[..., None], normal, -normal)
+    _require_half_spaces(domain, knots, np.where(is_side[..., None], normal, 0.0).sum(axis=1))
     order = np.argsort(~is_side, axis=1, kind="stable")[:, : is_side.sum(axis=1).max()]
     order = np.where(np.take_along_axis(is_side, order, axis=1), order, order[:, :1])
     return np.take_along_axis(normal, order[..., None], axis=1)
+
+
+def _require_half_spaces(domain: GeodesicTriangulation, knots: Floats, inward: Floats) -> None:
+    """Raise FitError unless the knots (E, K, 3) have a plane through the origin below them.
+
+    inward: (E, 3), the sums of the inner normals of the sides of their cones. A cone that holds no line has its apex
+    alone on all sides, so it lies above the plane of that sum; flat ones without sides lie above that of their mean.
+    """
+    curvature = domain.geometry.curvature
+    mean = domain.geometry.project(knots.sum(axis=1)) * [1.0, curvature, curvature]
+    above = [np.einsum("ei,eki->ek", n, knots).min(axis=1) > _LEAST_HEIGHT for n in (mean, inward)]
+    wide = np.flatnonzero(~(above[0] | above[1]))
+    if len(wide):
+        raise FitError(
+            f"the knots of simplex spline {wide[0]} lie in no half-space; the triangles are too large for the sphere: "
+            "take more of them (option size)"
+        )
 
 
 def reach(locator: Locator, face: Ints, knots: Floats, bounds: Floats) -> Reach:
@@ -69,19 +81,19 @@ def reach(locator: Locator, face: Ints, knots: Floats, bounds: Floats) -> Reach:
     found = [level]
     before = level
     while len(level[0]):
-        element = np.repeat(level[0], 3)
+        knot_set = np.repeat(level[0], 3)
         halfedge = (3 * level[1][:, None] + np.arange(3)).ravel()
         beyond = domain.twin[halfedge] // 3
         isometry = np.repeat(level[2], 3, axis=0) @ domain.gluing[halfedge]
-        overlap = _overlap(domain, beyond, isometry, knots, bounds, element)
-        fresh = (element[overlap], beyond[overlap], isometry[overlap])
+        overlap = _overlap(domain, beyond, isometry, knots, bounds, knot_set)
+        fresh = (knot_set[overlap], beyond[overlap], isometry[overlap])
         new = _unseen(domain, (before, level), fresh)
         before, level = level, (fresh[0][new], fresh[1][new], fresh[2][new])
         found.append(level)
-    element, triangle, isometry = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    order = np.lexsort((element, triangle))
+    knot_set, triangle, isometry = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    order = np.lexsort((knot_set, triangle))
     first = np.searchsorted(triangle[order], np.arange(domain.face_count + 1))
-    return Reach(first, element[order], np.ascontiguousarray(isometry[order]))
+    return Reach(first, knot_set[order], np.ascontiguousarray(isometry[order]))
 
 
 def _starts(locator: Locator, face: Ints, knots: Floats) -> tuple[Ints, Ints, Floats]:
@@ -95,17 +107,17 @@ def _starts(locator: Locator, face: Ints, knots: Floats) -> tuple[Ints, Ints, Fl
 
 
 def _overlap(
-    domain: GeodesicTriangulation, face: Ints, isometry: Floats, knots: Floats, bounds: Floats, element: Ints
+    domain: GeodesicTriangulation, face: Ints, isometry: Floats, knots: Floats, bounds: Floats, knot_set: Ints
 ) -> NDArray[np.bool_]:
     """Whether triangles, moved by isometries, overlap the hulls of sets of knots: no side of one has the other beyond.
 
     Two convex sets without a common inner point are on two sides of a side of one of them.
     """
     corners = np.einsum("nij,ncj->nci", isometry, domain.corners[face])
-    outside = (np.einsum("nbi,nci->nbc", bounds[element], corners).max(axis=2) <= _NARROW).any(axis=1)
+    outside = (np.einsum("nbi,nci->nbc", bounds[knot_set], corners).max(axis=2) <= _NARROW).any(axis=1)
     sides = np.cross(np.roll(corners, -1, axis=1), np.roll(corners, -2, axis=1))
     sides *= np.sign(np.linalg.det(corners))[:, None, None]
-    beyond = (np.einsum("nsi,nki->nsk", sides, knots[element]).max(axis=2) <= _NARROW).any(axis=1)
+    beyond = (np.einsum("nsi,nki->nsk", sides, knots[knot_set]).max(axis=2) <= _NARROW).any(axis=1)
     return np.asarray(~outside & ~beyond)
 
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from orbiframe import Orbifold, Points, Triangulation, UsageError
 from orbiframe.functions import OrbitSumBasis
-from orbiframe_bases.centres import require_positive, spread, supports
+from orbiframe_bases.centres import require_positive, require_share, spread, supports
 
 Floats = NDArray[np.float64]
 
@@ -21,7 +21,8 @@ class Wendland(OrbitSumBasis):
 
     size: how many functions; derivatives: 2, 4 or 6; reach: the support is the disc of area pi reach^2 times the area
     in X of the part of the surface that is nearest to the centre, smoothed over neighbouring parts. Where that would
-    leave a part of some triangle uncovered, the function is made wider.
+    leave a part of some triangle uncovered, the function is made wider; grading: how much of their density follows the
+    girth of the surface, the rest is even.
 
     Raises UsageError for an option out of range, FitError if the mesh has fewer vertices than `size`.
     """
@@ -34,11 +35,13 @@ class Wendland(OrbitSumBasis):
         size: int = 1000,
         derivatives: int = 2,
         reach: float = 3.0,
+        grading: float = 0.3,
     ) -> None:
         require_positive("wendland", size=size, reach=reach)
+        require_share("wendland", grading=grading)
         if derivatives not in _PROFILES:
             raise UsageError(f"option derivatives of the basis wendland is {derivatives}; it must be 2, 4 or 6")
-        spacing = spread(triangulation, size)
+        spacing = spread(triangulation, size, grading)
         centres = Points(triangulation.patch[spacing.chosen], triangulation.points[spacing.chosen])
         super().__init__(orbifold, centres, supports(triangulation, spacing, reach**2 / 2))
         self.smoothness = derivatives

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from orbiframe import FormatError, Registry, UsageError
-from orbiframe.files import require_folder, require_other_file
+from orbiframe.files import require_apart
 from orbiframe.plugin import DEFAULT_MARKER
 
 if TYPE_CHECKING:
@@ -42,8 +42,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     from orbiframe_drawing.file import require_picture_file, save_picture
 
     require_picture_file(args.output)
-    require_folder(args.output)
-    require_other_file(args.output, args.mesh)
+    require_apart({"-o": args.output}, {"the input": args.mesh, "--config": args.config})
     save_picture(_picture(args, registry), args.output)
     return 0
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
 
-from orbiframe import FormatError, UsageError
+from orbiframe import UsageError
+from orbiframe.files import require_output, write_bytes
 from orbiframe_drawing.picture import Picture
 from orbiframe_drawing.plot import pdf_bytes, png_bytes
 from orbiframe_drawing.svg import svg_text
@@ -20,11 +19,10 @@ _FORMATS: dict[str, Callable[[Picture], bytes]] = {
 
 
 def require_picture_file(path: Path) -> None:
-    """Raise UsageError for a suffix of no picture, FormatError where the folder is missing."""
+    """Raise UsageError for a suffix of no picture, FormatError where the file cannot be made."""
     if path.suffix.lower() not in _FORMATS:
         raise UsageError(f"{path} is no file for a picture; give it the suffix {', '.join(_FORMATS)}")
-    if not path.parent.is_dir():
-        raise FormatError(f"{path} cannot be written: there is no folder {path.parent}; make it first")
+    require_output(path)
 
 
 def save_picture(picture: Picture, path: str | Path) -> None:
@@ -35,13 +33,4 @@ def save_picture(picture: Picture, path: str | Path) -> None:
     """
     target = Path(path)
     require_picture_file(target)
-    data = _FORMATS[target.suffix.lower()](picture)
-    unfinished = target.with_name(f".{target.name}.{os.getpid()}")
-    try:
-        unfinished.write_bytes(data)
-        unfinished.replace(target)
-    except OSError as error:
-        raise FormatError(f"{target}: the picture cannot be written: {error.strerror}") from error
-    finally:
-        with suppress(OSError):
-            unfinished.unlink()
+    write_bytes(target, _FORMATS[target.suffix.lower()](picture))

@@ -124,7 +124,7 @@ class Solid(Model):
         """Cubics with the right ends and tangents."""
         geometry = self.geometry
         velocity = geometry.log(x, y)
-        counts = np.maximum(np.ceil(geometry.norm(velocity) / _STEP), 1).astype(np.intp)
+        counts = np.maximum(np.ceil(geometry.norm(x, velocity) / _STEP), 1).astype(np.intp)
         return [self._cubics(x[k], velocity[k], int(count)) for k, count in enumerate(counts)]
 
     def boundary(self) -> tuple[Curve, ...]:
@@ -178,7 +178,7 @@ class Solid(Model):
     def _cubics(self, x: Floats, velocity: Floats, count: int) -> Curve:
         t = np.arange(count + 1)[:, None] / count
         at = self.geometry.exp(x, t * velocity)
-        length = float(self.geometry.norm(velocity))
+        length = float(self.geometry.norm(x, velocity))
         if length == 0:
             return Curve(self._hermite(at, np.zeros_like(at)))
         # The speed at each stop: towards the point that lies as far beyond it again.

@@ -23,3 +23,11 @@ def orbiframe_components() -> list[Component]:
             "draw the tessellation and the surface of a mesh",
         ),
     ]
+
+
+@hookimpl
+def orbiframe_warm_up() -> list[str]:
+    """A surface in space."""
+    return [
+        "draw double_torus.off --surface -o out.svg",
+    ]

@@ -15,4 +15,10 @@ def orbiframe_components() -> list[Component]:
             "orbiframe_fitters.least_squares:LeastSquares",
             "weighted least squares with a fairing term on the Laplacian",
         ),
+        Component(
+            "fitter",
+            "sliding",
+            "orbiframe_fitters.sliding:Sliding",
+            "least distance along the normals: the samples slide along the surface",
+        ),
     ]

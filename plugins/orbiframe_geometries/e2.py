@@ -33,7 +33,7 @@ class E2(Geometry):
         points[..., 0] = 1.0
         return points
 
-    def inner(self, v: ArrayLike, w: ArrayLike) -> Floats:
+    def inner(self, x: ArrayLike, v: ArrayLike, w: ArrayLike) -> Floats:  # noqa: ARG002
         """v1 w1 + v2 w2."""
         return np.asarray(np.sum(np.asarray(v, dtype=float)[..., 1:] * np.asarray(w, dtype=float)[..., 1:], axis=-1))
 
@@ -44,7 +44,7 @@ class E2(Geometry):
     def versine(self, x: ArrayLike, y: ArrayLike) -> Floats:
         """d^2 / 2."""
         apart = self.chord(x, y)
-        return np.asarray(self.inner(apart, apart) / 2)
+        return np.asarray(self.inner(x, apart, apart) / 2)
 
     def distance(self, x: ArrayLike, y: ArrayLike) -> Floats:
         """|x - y|."""

@@ -10,6 +10,8 @@ from orbiframe import Geometry, GeometryError
 Floats = NDArray[np.float64]
 _FORM = np.array([1.0, -1.0, -1.0])
 _SIGNS = np.outer(_FORM, _FORM)
+# Geodesics are followed so far: cosh is still a float. Versines beyond the other number are the sinh of the distance.
+_LONGEST, _LARGE = 700.0, 1e100
 
 
 class H2(Geometry):
@@ -40,9 +42,15 @@ class H2(Geometry):
         points[..., 0] = np.sqrt(1 + points[..., 1] ** 2 + points[..., 2] ** 2)
         return points
 
-    def inner(self, v: ArrayLike, w: ArrayLike) -> Floats:
-        """v1 w1 + v2 w2 - v0 w0: minus the form of the paper, which is negative on tangent vectors."""
-        return np.asarray(-np.sum(np.asarray(v, dtype=float) * _FORM * np.asarray(w, dtype=float), axis=-1))
+    def inner(self, x: ArrayLike, v: ArrayLike, w: ArrayLike) -> Floats:
+        """(v1 w1 + v2 w2 + (x cross v)(x cross w)) / x0^2, the cross product being that of (x1, x2).
+
+        On tangent vectors that is v1 w1 + v2 w2 - v0 w0, minus the form of the paper, of which nothing is left far out.
+        """
+        base, v, w = (np.asarray(a, dtype=float) for a in (x, v, w))
+        height, across = base[..., 0], [_cross(base, a) / base[..., 0] for a in (v, w)]
+        along = (v[..., 1] / height) * (w[..., 1] / height) + (v[..., 2] / height) * (w[..., 2] / height)
+        return np.asarray(along + across[0] * across[1])
 
     def chord(self, x: ArrayLike, y: ArrayLike) -> Floats:
         """y - x with y0 - x0 from the differences of (x1, x2)."""
@@ -64,7 +72,11 @@ class H2(Geometry):
         u, v = q[..., 1] - p[..., 1], q[..., 2] - p[..., 2]
         cross = np.where(nearer, p[..., 1], q[..., 1]) * v - np.where(nearer, p[..., 2], q[..., 2]) * u
         dot = p[..., 1] * q[..., 1] + p[..., 2] * q[..., 2]
-        close = (u**2 + v**2 + cross**2) / (1 + p[..., 0] * q[..., 0] + np.maximum(dot, 0.0))
+        whole = 1 + p[..., 0] * q[..., 0] + np.maximum(dot, 0.0)
+        with np.errstate(over="ignore"):
+            close = (u**2 + v**2 + cross**2) / whole
+        # Beyond 88 the squares are too large for a float, and their quotients are not.
+        close = np.where(np.isfinite(close), close, u * (u / whole) + v * (v / whole) + cross * (cross / whole))
         return np.asarray(np.where(dot >= 0, close, a + b + a * b - dot))
 
     def distance(self, x: ArrayLike, y: ArrayLike) -> Floats:
@@ -72,10 +84,20 @@ class H2(Geometry):
         return np.asarray(2 * np.arcsinh(np.sqrt(self.versine(x, y) / 2)))
 
     def exp(self, x: ArrayLike, v: ArrayLike) -> Floats:
-        """cosh|v| x + sinh|v| v/|v|, with |v|^2 = (v1^2 + v2^2 + (x1 v2 - x2 v1)^2) / x0^2."""
+        """cosh|v| x + sinh|v| v/|v|, with |v|^2 = (v1^2 + v2^2 + (x1 v2 - x2 v1)^2) / x0^2.
+
+        Raises GeometryError where the length that rounding leaves of a vector is beyond all floats: far from the
+        origin, a vector at x has an error of eps e^(2 D), of which eps e^D is seen along X.
+        """
         base, velocity = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(v, dtype=float))
-        cross = base[..., 1] * velocity[..., 2] - base[..., 2] * velocity[..., 1]
-        speed = np.hypot(np.hypot(velocity[..., 1], velocity[..., 2]), cross) / base[..., 0]
+        speed = np.hypot(np.hypot(velocity[..., 1], velocity[..., 2]), _cross(base, velocity)) / base[..., 0]
+        lost = np.flatnonzero(np.ravel(speed) > _LONGEST)
+        if lost.size:
+            raise GeometryError(
+                f"vector {lost[0]} has the length {np.ravel(speed)[lost[0]]:.6g} at a point at distance "
+                f"{np.arccosh(np.ravel(base[..., 0])[lost[0]]):.6g} from the origin; geodesics of H^2 end within "
+                f"{_LONGEST:g}: use a frame near the point"
+            )
         ratio = np.where(speed == 0, 1.0, np.sinh(speed) / np.where(speed == 0, 1.0, speed))
         return self.settle(np.cosh(speed)[..., None] * base + ratio[..., None] * velocity)
 
@@ -83,9 +105,9 @@ class H2(Geometry):
         """(d / sinh d) (y - x - c x) with c = cosh d - 1."""
         base = np.asarray(x, dtype=float)
         versine = self.versine(base, y)
-        sine = np.sqrt(versine * (versine + 2))
+        sine = np.where(versine < _LARGE, np.sqrt(np.minimum(versine, _LARGE) * (versine + 2)), versine)
         ratio = np.where(sine == 0, 1.0, self.distance(base, y) / np.where(sine == 0, 1.0, sine))
-        tangent = ratio[..., None] * (self.chord(base, y) - versine[..., None] * base)
+        tangent = ratio[..., None] * self.chord(base, y) - (ratio * versine)[..., None] * base
         tangent[..., 0] = np.sum(base[..., 1:] * tangent[..., 1:], axis=-1) / base[..., 0]
         return np.asarray(tangent)
 
@@ -126,6 +148,11 @@ class H2(Geometry):
     def inverse(self, g: ArrayLike) -> Floats:
         """J g^T J."""
         return np.asarray(_SIGNS * np.swapaxes(np.asarray(g, dtype=float), -1, -2))
+
+
+def _cross(x: Floats, v: Floats) -> Floats:
+    """x1 v2 - x2 v1."""
+    return np.asarray(x[..., 1] * v[..., 2] - x[..., 2] * v[..., 1])
 
 
 def _height(x: Floats) -> Floats:

@@ -33,7 +33,7 @@ class S2(Geometry):
         points = np.asarray(x, dtype=float)
         return np.asarray(points / np.sqrt(np.sum(points**2, axis=-1, keepdims=True)))
 
-    def inner(self, v: ArrayLike, w: ArrayLike) -> Floats:
+    def inner(self, x: ArrayLike, v: ArrayLike, w: ArrayLike) -> Floats:  # noqa: ARG002
         """v . w."""
         return np.asarray(np.sum(np.asarray(v, dtype=float) * np.asarray(w, dtype=float), axis=-1))
 
@@ -52,7 +52,7 @@ class S2(Geometry):
 
     def exp(self, x: ArrayLike, v: ArrayLike) -> Floats:
         """cos|v| x + sin|v| v/|v|."""
-        speed = self.norm(v)[..., None]
+        speed = self.norm(x, v)[..., None]
         return self.settle(np.cos(speed) * np.asarray(x) + np.sinc(speed / np.pi) * np.asarray(v))
 
     def log(self, x: ArrayLike, y: ArrayLike) -> Floats:

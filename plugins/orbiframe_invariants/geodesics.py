@@ -119,7 +119,7 @@ class Geodesics:
         over the length d in H^2.
         """
         v = np.asarray(velocity, dtype=float)
-        speed = self.geometry.norm(v)
+        speed = self.geometry.norm(x.x, v)
         still = speed == 0
         ahead = np.where(still[:, None], self.geometry.frame(x.x)[..., 0], v)
         patch, flag = np.array(x.patch, dtype=np.intp), self.geometry.flag(x.x, ahead)
@@ -140,9 +140,9 @@ class Geodesics:
     def closed(self, deck: ArrayLike | PreciseIsometry, patch: int = 0) -> ClosedGeodesic:
         """The shortest closed curve in the class of a deck transformation, a matrix (3, 3), seen from a patch.
 
-        In a named group `group.element_spin(word)` is the deck transformation of a loop, as a `PreciseIsometry`. Raises
-        GeometryError for the identity and other isometries with a fixed point, whose loops can be contracted or run
-        round a singular point.
+        In a named group `group.precise_element(word)` is the deck transformation of a loop, as a `PreciseIsometry`.
+        Raises GeometryError for the identity and other isometries with a fixed point, whose loops can be contracted or
+        run round a singular point.
         """
         precise = (
             deck if isinstance(deck, PreciseIsometry) else PreciseIsometry.of_matrix(self.geometry.curvature, deck)
@@ -260,4 +260,4 @@ def _axis_flag(geometry: Geometry, precise: PreciseIsometry) -> Floats:
     foot = geometry.project(np.array([1 - k * height**2, *(-height * np.array(normal))]))
     along = geometry.turn(foot, np.array([k * height, *normal]))
     moved = geometry.log(foot, geometry.act(precise.matrix[0], foot))
-    return geometry.flag(foot, along * np.sign(geometry.inner(along, moved)))
+    return geometry.flag(foot, along * np.sign(geometry.inner(foot, along, moved)))

@@ -16,3 +16,11 @@ def orbiframe_components() -> list[Component]:
             "describe, measure and draw a group from a word",
         )
     ]
+
+
+@hookimpl
+def orbiframe_warm_up() -> list[str]:
+    """The elements of a group, and what lives on its orbifold."""
+    return [
+        "group abABcdCD --spectrum 3 --systole",
+    ]

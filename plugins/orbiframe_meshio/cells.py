@@ -26,6 +26,8 @@ DIALECTS = {".msh": "gmsh22"}
 TAGS: dict[str | None, tuple[str, ...]] = {"gmsh22": ("gmsh:physical", "gmsh:geometrical")}
 # SU2 has surfaces in the plane only.
 PLANE = {".su2"}
+# Suffixes of formats that hold larger polygons.
+POLYGONAL = {".vtk", ".vtu"}
 # meshio's names of the formats that are read line by line.
 LINE_READERS = {
     **dict.fromkeys((".dat", ".tec"), "tecplot"),
@@ -55,6 +57,11 @@ def polyhedron_of(path: Path) -> Polyhedron:
 
 def save(path: Path, polyhedron: Polyhedron) -> None:
     """Write a file and read it again. Raises FormatError where that is not the same polyhedron."""
+    if path.suffix.lower() not in POLYGONAL and polyhedron.face_sizes.max(initial=0) > 4:
+        raise FormatError(
+            f"{path}: this format holds triangles and quads only, but one has {polyhedron.face_sizes.max()} corners; "
+            "write OFF, OBJ, PLY or VTU, or use convert --triangulate"
+        )
     blocks = list(_blocks(polyhedron))
     dialect = DIALECTS.get(path.suffix.lower())
     tags = {name: [np.zeros(len(corners), dtype=np.int32) for _, corners in blocks] for name in TAGS.get(dialect, ())}
@@ -141,11 +148,18 @@ def _strict(path: Path) -> Iterator[None]:
     except FormatError:
         raise
     except (Exception, SystemExit) as error:
-        said = _brief(words.getvalue()) or f"{type(error).__name__}: {_brief(str(error))}"
-        raise FormatError(f"{path}: meshio failed: {said}") from error
+        reason = _reason(words.getvalue(), error)
+        raise FormatError(f"{path}: meshio cannot make sense of this file{reason}") from error
     said = _brief(HARMLESS.sub("", " ".join(words.getvalue().split())))
     if said:
         raise FormatError(f"{path}: meshio is not sure of this file: {said}")
+
+
+def _reason(printed: str, error: BaseException) -> str:
+    """What meshio says for people, in print or by an error of its own; nothing of bare errors of Python."""
+    own = (meshio.ReadError, meshio.WriteError, FormatError, EOFError, MemoryError, RuntimeError)
+    said = _brief(printed) or (_brief(str(error)) or type(error).__name__ if isinstance(error, own) else "")
+    return f": {said}" if said else "; is it damaged, or of another format?"
 
 
 def _brief(words: str) -> str:

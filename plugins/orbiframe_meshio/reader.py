@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from orbiframe import Polyhedron
+from orbiframe import FormatError, Polyhedron
 from orbiframe.files import confined_read
+
+# Read by readers that know all keywords.
+OWN = {".inp", ".nas", ".bdf", ".fem", ".msh", ".mesh", ".meshb", ".dat", ".tec"}
 
 
 def read(path: Path, *, seconds: float = 60.0) -> Polyhedron:
@@ -15,4 +18,9 @@ def read(path: Path, *, seconds: float = 60.0) -> Polyhedron:
     out. Raises FormatError where meshio fails, warns or ends its process, for solid cells, and for XML files with
     entities.
     """
+    if path.suffix.lower() in OWN:
+        raise FormatError(
+            f"{path}: {path.suffix} files hold keywords that meshio passes over; "
+            "leave the format away, so that they are read without it"
+        )
     return confined_read("orbiframe_meshio.cells:polyhedron_of", path, seconds=seconds)

@@ -17,12 +17,21 @@ INCLUDING = {".inp", ".post", ".dato", *NASTRAN}
 ENTITY = re.compile(rb"<!(ENTITY|DOCTYPE)")
 # The line with which a whole file ends.
 ENDS = {".mesh": b"End", ".vol": b"endmesh", ".post": b"$FIN", ".dato": b"$FIN", **dict.fromkeys(NASTRAN, b"ENDDATA")}
-# Cards of points and faces that meshio would pass over: in long fields, in small letters, of other kinds.
-PASSED = re.compile(
-    rb"^(?!GRID\*?[ ,]|(?:CTRIA3|CTRIAR|CQUAD4|CQUADR|CSHEAR)[ ,])(?i:grid|ctri|cquad|cshear).*", re.MULTILINE
+# Keywords that meshio would pass over, of Permas and of SU2: all but those that it obeys, or that change nothing.
+PERMAS = re.compile(
+    rb"^(?!\$(?:COOR|STRUCTURE|FIN|(?:END|EXIT) \w+|ENTER COMPONENT[^\n]*|[NE]SET\b[^\n]*|ELEMENT TYPE *= *\w+)[ \t]*$)"
+    rb"(?:\$|COOR|ELEMENT|NSET|ESET).*",
+    re.MULTILINE | re.IGNORECASE,
 )
-# A point in a coordinate system of its own, in short or long fields or between commas.
-SYSTEM = re.compile(rb"^GRID(?:    .{8} {0,7}[1-9]|\* {3}.{16} {0,15}[1-9]|\*? *,[^,\n]*, *[1-9]).*", re.MULTILINE)
+SU2 = re.compile(
+    rb"^[ \t]*(?!(?:NDIME|NELEM|NPOIN|NMARK|MARKER_TAG|MARKER_ELEMS|SEND_RECV)[ \t]*=)[^%=\n]*=.*", re.MULTILINE
+)
+KEYWORDS = {".post": PERMAS, ".dato": PERMAS, ".su2": SU2}
+# Those that count once: meshio takes the last.
+ONCE = {
+    **dict.fromkeys((".post", ".dato"), re.compile(rb"^\$COOR.*", re.MULTILINE)),
+    ".su2": re.compile(rb"^[ \t]*(?:NDIME|NPOIN|NELEM)\b", re.MULTILINE),
+}
 # Numbers of elements in SU2.
 COUNT = re.compile(rb"^(?:NELEM|MARKER_ELEMS)[ \t]*=[ \t]*(\d{1,12})[ \t\r]*$", re.MULTILINE)
 # meshio takes long over long lines, as it prints them.
@@ -50,7 +59,8 @@ def require_trustworthy(path: Path) -> None:
     suffix = path.suffix.lower()
     if suffix in CONTAINERS:
         raise FormatError(f"{path}: {suffix} files may name other files, so they are not read; save it as VTU or PLY")
-    content = path.read_bytes()
+    # Lines end where meshio, too, sees their ends.
+    content = path.read_bytes().replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     if suffix in XML:
         _require_plain_xml(path, content)
     if suffix in SHORT_LINED:
@@ -60,18 +70,18 @@ def require_trustworthy(path: Path) -> None:
     if suffix in ENDS and not re.search(rb"^[ \t]*" + re.escape(ENDS[suffix]), content, re.MULTILINE):
         line = content.rstrip().count(b"\n") + 1
         raise FormatError(f"{path}, line {line}: the file ends without '{ENDS[suffix].decode()}'; is it cut short?")
-    if suffix in NASTRAN:
+    if suffix in KEYWORDS:
         _refuse(
-            path, content, PASSED, "cards of this spelling are not read; write GRID, CTRIA3, CQUAD4 in short fields"
+            path, content, KEYWORDS[suffix], "this keyword is not known, or changes what others mean; it is not read"
         )
-        _refuse(path, content, SYSTEM, "points in coordinate systems of their own are not read")
+        _require_once(path, content, ONCE[suffix])
     if suffix == ".ugrid":
         _require_words(path, content)
 
 
 def require_counts(path: Path, found: int) -> None:
     """Raise FormatError unless an SU2 file says that it has so many elements."""
-    asked = sum(map(int, COUNT.findall(path.read_bytes())))
+    asked = sum(map(int, COUNT.findall(path.read_bytes().replace(b"\r", b"\n"))))
     if asked != found:
         raise FormatError(f"{path}: the counts say {asked} elements, but there are {found}; is the file cut short?")
 
@@ -82,6 +92,18 @@ def _refuse(path: Path, content: bytes, pattern: re.Pattern[bytes], complaint: s
         line = content.count(b"\n", 0, found.start()) + 1
         word = found[0].strip()[:SHOWN].decode("utf-8", errors="replace")
         raise FormatError(f"{path}, line {line}: found {word!r}; {complaint}")
+
+
+def _require_once(path: Path, content: bytes, pattern: re.Pattern[bytes]) -> None:
+    met: set[bytes] = set()
+    for found in pattern.finditer(content):
+        word = found[0].split()[0]
+        if word in met:
+            line = content.count(b"\n", 0, found.start()) + 1
+            raise FormatError(
+                f"{path}, line {line}: {word[:SHOWN].decode(errors='replace')} stands twice; one mesh is read"
+            )
+        met.add(word)
 
 
 def _require_short_lines(path: Path, content: bytes) -> None:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from orbiframe.plugin import Component, hookimpl
 
 EXTRA = "orbiframe[open3d]"
-SUFFIXES = (".glb", ".gltf", ".fbx")
+SUFFIXES = (".fbx",)
 
 
 @hookimpl
 def orbiframe_components() -> list[Component]:
     """One reader and one writer; as `format` they serve every suffix that Open3D knows."""
     return [
-        Component("reader", "open3d", "orbiframe_open3d.reader:read", "glTF and FBX, triangles", EXTRA, SUFFIXES),
-        Component("writer", "open3d", "orbiframe_open3d.writer:write", "glTF and FBX, triangles", EXTRA, SUFFIXES),
+        Component("reader", "open3d", "orbiframe_open3d.reader:read", "FBX, triangles", EXTRA, SUFFIXES),
+        Component("writer", "open3d", "orbiframe_open3d.writer:write", "FBX, triangles", EXTRA, SUFFIXES),
     ]

@@ -55,7 +55,7 @@ def packed(mesh: Polyhedron, curvature: int, *, without_face: int | None = None)
     if not state.worst < _ACCEPTED:
         raise MapError(
             f"the circle packing stopped at an angle error of {state.worst:.1e}, {_ACCEPTED:.0e} is allowed; "
-            f"{advice(mesh)}"
+            f"{advice(mesh, digits=float(np.ptp(state.u)) / np.log(10))}"
         )
     radii = law.radii(state.u)
     return Packing(radii, radii[mesh.tail] + radii[mesh.head], state.angles.ravel(), steps)

@@ -17,6 +17,7 @@ Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
 _SAME = 1e-4
+_SPANNED, _FACTOR = np.log(1e5), np.log(400)
 
 
 def developed(
@@ -154,10 +155,11 @@ def _patch_frames(
     """The patch of every vertex, (V,), and the isometry from its own frame to that of its patch, (V, 3, 3).
 
     Distance is the length in X plus 1.5 times the length in space over the size of the mesh: where the map crowds
-    much of the surface into little of X/H, patches shrink with the scale and coordinates keep their digits.
+    much of the surface into little of X/H, patches shrink with the scale and coordinates keep their digits. Where the
+    scale changes by many digits along a thin limb, so much of it as changes it by a factor of 400 is a distance of 1.
     """
     scale = 1.5 / max(mesh.diagonal, np.finfo(float).tiny)
-    graph = edge_graph(mesh, lengths + scale * mesh.edge_lengths)
+    graph = edge_graph(mesh, lengths + scale * mesh.edge_lengths + _scale_steps(mesh, lengths))
     forest = dijkstra_forest(graph, covering_points(graph, patch_radius))
     last = np.flatnonzero(forest.link >= 0)
     halfedge, backward = graph.halfedge[forest.link[last]], graph.backward[forest.link[last]]
@@ -165,6 +167,20 @@ def _patch_frames(
     onward[last] = np.where(backward[:, None, None], geometry.inverse(steps[halfedge]), steps[halfedge])
     _carry(forest.order, forest.parent, onward)
     return forest.owner, onward
+
+
+def _scale_steps(mesh: Polyhedron, lengths: Floats) -> Floats:
+    """How much the scale of a map changes along each edge, (H,): a sixth of the change of its logarithm.
+
+    0 where the scale spans less than five digits: coordinates have enough of them.
+    """
+    count = len(mesh.vertices)
+    in_x, in_space = (np.bincount(mesh.tail, weights=part, minlength=count) for part in (lengths, mesh.edge_lengths))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        scale = np.log(in_x / in_space)
+    if not np.isfinite(scale).all() or np.ptp(scale) < _SPANNED:
+        return np.zeros(len(lengths))
+    return np.asarray(np.abs(scale[mesh.head] - scale[mesh.tail]) / _FACTOR)
 
 
 @compiled

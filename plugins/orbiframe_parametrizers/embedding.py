@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import MapError, Triangulation
-from orbiframe_parametrizers.advice import advice
+from orbiframe.triangulations import crowding_of
+from orbiframe_parametrizers.advice import CROWDED, advice
 from orbiframe_parametrizers.developing import with_patch_radii
 from orbiframe_parametrizers.edge_weights import WEIGHTS, cotangent, mean_value
 from orbiframe_parametrizers.harmonic_energy import minimised
@@ -25,10 +26,11 @@ def embedded(layout: Triangulation, choice: str, finish: Finish = lambda result,
 
     layout: the atlas and the first guess; choice: "cotangent", "mixed" (mean values about the folds, cotangents
     elsewhere), "mean-value", "uniform", or "auto", the first of these that makes no fold; finish: what is done to every
-    harmonic map with its weights (H,). Raises MapError where none is an embedding.
+    harmonic map with its weights (H,). Where a harmonic map has lost 13 digits or more to crowding, or where none is an
+    embedding, "auto" leaves the first guess as it is, if that has no fold. Raises MapError where nothing has none.
     """
     names = ["cotangent", "mixed", "mean-value", "uniform"] if choice == "auto" else [choice]
-    attempt = layout
+    attempt, first, crowded = layout, layout, None
     for name in names:
         if name == "mixed":
             result = _mixed(layout, finish)
@@ -37,9 +39,15 @@ def embedded(layout: Triangulation, choice: str, finish: Finish = lambda result,
         if result is None:
             continue
         if result.not_positive == 0:
-            return result
+            if choice != "auto" or crowding_of(result).digits_lost < CROWDED:
+                return result
+            crowded = crowded or result
         attempt = result
         layout = result if name == "cotangent" else layout  # a better first guess than the layout
+    if choice == "auto" and first.not_positive == 0:
+        return with_patch_radii(replace(finish(first, mean_value(first.polyhedron)), weights="first guess"))
+    if crowded is not None:
+        return crowded
     raise MapError(
         f"no map without a fold was found with {' or '.join(names)} weights; "
         + (advice(layout.polyhedron, attempt) if choice == "auto" else "use map.weights = 'auto'")

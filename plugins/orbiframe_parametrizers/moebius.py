@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,8 +18,19 @@ _SMALLEST_BOOST = 1e-14
 _ACCEPTED = 1e-9
 
 
-def centred_caps(z: NDArray[np.complex128], radii: Floats, weights: Floats) -> Floats:
-    """The centres (V, 3) on the unit sphere of circles z, radii (V,) of the plane, moved to have weighted mean zero.
+class Centred(NamedTuple):
+    """The centres (V, 3) of caps on the unit sphere, and the Moebius map of the plane that centred them, (2, 2).
+
+    The map takes z to (a z + b) / (c z + d), and its determinant is known without a difference of large numbers.
+    """
+
+    centres: Floats
+    matrix: NDArray[np.complex128]
+    determinant: float
+
+
+def centred_caps(z: NDArray[np.complex128], radii: Floats, weights: Floats) -> Centred:
+    """Circles z (V,) with radii (V,) of the plane on the unit sphere, moved so that their weighted mean is zero.
 
     Points are circles of radius 0.
     A circle is the vector (cos rho, c) / sin rho of its spherical cap (centre c, angular radius rho) in the Lorentz
@@ -26,10 +39,15 @@ def centred_caps(z: NDArray[np.complex128], radii: Floats, weights: Floats) -> F
     of a convex function on H^3); big steps are cut to rapidity 2. Raises MapError without
     convergence, as where z is not finite or all weights are 0.
     """
-    weights = weights / weights.sum()
+    with np.errstate(over="ignore", invalid="ignore"):
+        return _balanced(z, radii, weights / weights.sum())
+
+
+def _balanced(z: NDArray[np.complex128], radii: Floats, weights: Floats) -> Centred:
     middle = np.average(z, weights=weights)
-    scale = np.average(np.abs(z - middle), weights=weights)
+    scale = float(np.average(np.abs(z - middle), weights=weights))
     caps = _caps((z - middle) / scale, radii / scale)
+    matrix = np.array([[1, -middle], [0, scale]])
     for _ in range(_STEPS):
         centres = caps[:, 1:] / np.linalg.norm(caps[:, 1:], axis=1, keepdims=True)
         mean = weights @ centres
@@ -40,10 +58,19 @@ def centred_caps(z: NDArray[np.complex128], radii: Floats, weights: Floats) -> F
         size = float(np.linalg.norm(boost))
         if size < _SMALLEST_BOOST:
             break
-        caps = caps @ _boost(boost / size, min(size, _LARGEST)).T
+        rapidity = min(size, _LARGEST)
+        caps = caps @ _boost(boost / size, rapidity).T
+        matrix = _moebius(boost / size, rapidity) @ matrix
     if not np.linalg.norm(mean) < _ACCEPTED:
         raise MapError("the sphere could not be balanced: the mesh is too crowded for doubles; shorten thin parts")
-    return np.asarray(centres)
+    return Centred(np.asarray(centres), matrix, scale)
+
+
+def _moebius(direction: Floats, rapidity: float) -> NDArray[np.complex128]:
+    """The Moebius map of the plane, of determinant 1, that is the boost of the sphere towards a direction."""
+    n0, across = direction[0], direction[1] + 1j * direction[2]
+    towards = np.array([[-n0, across], [np.conj(across), n0]])
+    return np.asarray(np.cosh(rapidity / 2) * np.eye(2) + np.sinh(rapidity / 2) * towards)
 
 
 def _caps(z: NDArray[np.complex128], radii: Floats) -> Floats:

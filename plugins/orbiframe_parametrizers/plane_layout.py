@@ -1,6 +1,13 @@
-"""Plane layout: a sphere without one face in the plane, as its circle packing or by a harmonic map with a pole."""
+"""Plane layout: a sphere without one face in the plane, as its circle packing or by a harmonic map with a pole.
+
+A thin limb of length L and radius r is mapped to a disc that is smaller by exp(-L/r) than all: a place in it takes more
+digits than a double has. So places come with the differences along the edges, which have all their digits.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +19,20 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Complexes = NDArray[np.complex128]
 
+_CORRECTIONS = 4
+_AGREED = 1e-10
+_ROOMY = 1e-8  # edges no shorter than this share of the whole keep half their digits without a correction
 
-def packed_layout(mesh: Polyhedron, angles: Floats, hole: int) -> Complexes:
-    """The centres (V,) of a circle packing with corner angles (H,), the corners of the hole clockwise on unit circles.
+
+class Layout(NamedTuple):
+    """Vertices in the plane, (V,), and the differences head minus tail along the halfedges, (H,), with all digits."""
+
+    z: Complexes
+    differences: Complexes
+
+
+def packed_layout(mesh: Polyhedron, angles: Floats, hole: int) -> Layout:
+    """The centres of a circle packing with corner angles (H,), the corners of the hole clockwise on unit circles.
 
     With the cotangents of a flat metric linear functions are harmonic: the layout is the solution of one linear
     system with three fixed vertices. The edges between those are fixed at both ends, so that the hole does not matter.
@@ -28,17 +46,17 @@ def packed_layout(mesh: Polyhedron, angles: Floats, hole: int) -> Complexes:
     return _solved(mesh, half + half[mesh.twin], corners, position, np.zeros_like(position))
 
 
-def harmonic_layout(mesh: Polyhedron, weights: Floats, pole: int) -> Complexes:
-    """The harmonic map (V,) to the plane with a simple pole in one face, conformal as the weights (H,) see it.
+def harmonic_layout(mesh: Polyhedron, weights: Floats, pole: int) -> Layout:
+    """The harmonic map to the plane with a simple pole in one face, conformal as the weights (H,) see it.
 
     The sources are a discrete derivative of the delta function (Haker et al., Conformal surface parameterization for
-    texture mapping, 2000). One vertex is fixed; scale and rotation are arbitrary.
+    texture mapping, 2000). Scale and rotation are arbitrary. A vertex of the pole is fixed: what rounding leaves of the
+    sum of the sources flows to the fixed vertex, and along a limb it would drown the map of the limb.
     """
     vertices, places = _unfolded_round(mesh, pole)
     source = np.zeros(len(mesh.vertices), dtype=np.complex128)
     np.add.at(source, vertices, _dipole(places))
-    far = int(np.argmax(np.linalg.norm(mesh.vertices - mesh.vertices[vertices[0]], axis=1)))
-    return _solved(mesh, weights, np.array([far]), np.zeros_like(source), source)
+    return _solved(mesh, weights, vertices[:1], np.zeros_like(source), source)
 
 
 def _dipole(places: Complexes) -> Complexes:
@@ -72,18 +90,43 @@ def _in_frame(vectors: Floats, axis: Floats) -> tuple[Floats, Floats]:
     return along, np.linalg.norm(vectors - along[:, None] * unit, axis=1)
 
 
-def _solved(mesh: Polyhedron, weights: Floats, fixed: Ints, position: Complexes, source: Complexes) -> Complexes:
-    """The solution of sum over edges of w (z_i - z_j) = source_i at the free vertices, z = position at the fixed."""
-    count = len(position)
-    held = np.zeros(count, dtype=np.bool_)
+def _solved(mesh: Polyhedron, weights: Floats, fixed: Ints, position: Complexes, source: Complexes) -> Layout:
+    """The solution of sum over edges of w (z_i - z_j) = source_i at the free vertices, z = position at the fixed.
+
+    Where edges are short against the whole, the solution is corrected by solutions for what is left of the equations.
+    Each correction is smaller than the one before by all the digits of a double. So a difference of two vertices is a
+    sum of differences of corrections: of near numbers, hence exact, or of far ones, which are large.
+    """
+    held = np.zeros(len(position), dtype=np.bool_)
     held[fixed] = True
+    solve = _solver(mesh, weights, held)
+    known = ~held[mesh.tail] & held[mesh.head]
+    right = np.where(held, position, source)
+    np.add.at(right, mesh.tail[known], weights[known] * position[mesh.head[known]])
+    z = solve(right)
+    differences = z[mesh.head] - z[mesh.tail]
+    if not np.isfinite(z).all() or np.abs(differences).min() > _ROOMY * np.abs(z - z[0]).max():
+        return Layout(z, differences)
+    for _ in range(_CORRECTIONS):
+        rest = np.where(held, 0, source)
+        np.add.at(rest, mesh.tail, np.where(held[mesh.tail], 0, weights * differences))
+        correction = solve(rest)
+        change = correction[mesh.head] - correction[mesh.tail]
+        z, differences = z + correction, differences + change
+        if (np.abs(change) <= _AGREED * np.abs(differences)).all():
+            break
+    return Layout(z, differences)
+
+
+def _solver(mesh: Polyhedron, weights: Floats, held: NDArray[np.bool_]) -> Callable[[Complexes], Complexes]:
+    """For right sides (V,) at the free vertices, and values at those that are held, the solution (V,)."""
     i, j = mesh.tail, mesh.head
-    known = ~held[i] & held[j]
-    right = source.copy()
-    np.add.at(right, i[known], weights[known] * position[j[known]])
-    right[fixed] = position[fixed]
-    diagonal = np.where(held, 1.0, np.bincount(i, weights=weights, minlength=count))
+    diagonal = np.where(held, 1.0, np.bincount(i, weights=weights, minlength=len(held)))
     inner = np.flatnonzero(mesh.representative & ~held[i] & ~held[j])
     solve = Elimination.of(mesh).solver(i[inner], j[inner], -weights[inner], diagonal)
-    solution = solve(np.stack([right.real, right.imag], axis=1))
-    return np.asarray(solution[:, 0] + 1j * solution[:, 1])
+
+    def solution(right: Complexes) -> Complexes:
+        found = solve(np.stack([right.real, right.imag], axis=1))
+        return np.asarray(found[:, 0] + 1j * found[:, 1])
+
+    return solution

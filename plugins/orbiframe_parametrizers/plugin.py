@@ -34,3 +34,11 @@ def orbiframe_components() -> list[Component]:
             "faces in X/H as regular as possible, squares from quadrilaterals, by Newton on a shape energy",
         ),
     ]
+
+
+@hookimpl
+def orbiframe_warm_up() -> list[str]:
+    """A map to a named group; the others are what a fit does by itself."""
+    return [
+        "fit double_torus.off -o out.ply --quiet --group regular-polygon",
+    ]

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csr_array, eye_array
-from scipy.sparse.linalg import splu
+from scipy.sparse import coo_array, csr_array, diags_array, eye_array
+from scipy.sparse.linalg import lsmr, splu
 
 from orbiframe import Geometry
 
@@ -17,6 +17,9 @@ Ints = NDArray[np.intp]
 
 _ROUNDS = 8
 _SHIFT = 1e-9
+_ROUNDED = 5e-14  # a defect that is rounding already: products of three isometries at a distance of 1 to 3
+_FACTORED = 8000  # from more unknowns on the factors of a group with many handles, an expander, fill up
+_DIGITS = 1e-10
 
 
 def with_relations(geometry: Geometry, transition: Ints, isometry: Floats) -> Floats:
@@ -24,15 +27,21 @@ def with_relations(geometry: Geometry, transition: Ints, isometry: Floats) -> Fl
 
     transition: (H,), three for each triangle; isometries come in pairs of inverses 2k + 1, 2k + 2 after the identity.
     Each free one is multiplied by exp(xi); the relations are linear in xi up to second order, and the least xi is
-    found from the normal equations, factored once, again as long as the defect falls (Gauss-Newton). Turning and moving
-    the frame of a patch breaks no relation; a tiny shift of the matrix holds the frames still.
+    found, again as long as the defect falls (Gauss-Newton) and is more than rounding. Turning and moving the frame of
+    a patch breaks no relation, and the least xi does neither. Matrices that are off the group are made isometries
+    first: no xi mends that, and the first defect would hide what the round gained.
     """
     relations = _distinct_relations(transition)
     if not len(relations):
         return isometry
-    solve = _least_squares(_linearised(geometry, relations, isometry))
-    best, defect = isometry, _defect(isometry, relations)
+    best, solve = isometry, None
+    if geometry.isometry_defect(isometry).max() > _ROUNDED:
+        best = _moved(geometry, isometry, np.zeros(3 * (len(isometry) // 2)))
+    defect = _defect(best, relations)
     for _ in range(_ROUNDS):
+        if defect <= _ROUNDED:
+            break
+        solve = solve or _least_squares(_linearised(geometry, relations, best))
         trial = _moved(geometry, best, solve(-_residual(best, relations)))
         new = _defect(trial, relations)
         if not new < defect:
@@ -92,11 +101,26 @@ def _linearised(geometry: Geometry, relations: Ints, isometry: Floats) -> csr_ar
 
 def _least_squares(matrix: csr_array[Any]) -> Callable[[Floats], Floats]:
     """For a right side the least vector that comes as near to a solution as any, to about eight digits."""
+    return _by_factors(matrix) if matrix.shape[1] <= _FACTORED else _by_iteration(matrix)
+
+
+def _by_factors(matrix: csr_array[Any]) -> Callable[[Floats], Floats]:
+    """From the normal equations, factored once; a tiny shift makes them definite."""
     normal = (matrix.T @ matrix).tocsc()
     shifted = normal + _SHIFT * float(normal.diagonal().mean()) * eye_array(normal.shape[0], format="csc")
     options = {"SymmetricMode": True}
     factors = splu(shifted.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
     return lambda right: np.asarray(factors.solve(matrix.T @ right))
+
+
+def _by_iteration(matrix: csr_array[Any]) -> Callable[[Floats], Floats]:
+    """By LSMR (Fong and Saunders 2011) on rows of length 1; the relations g e g^-1 = e have rows of zeros."""
+    length = np.sqrt(matrix.multiply(matrix).sum(axis=1))
+    weight = np.divide(1.0, length, out=np.zeros_like(length), where=length > _DIGITS * length.max())
+    rows = csr_array(diags_array(weight) @ matrix)
+    rows.eliminate_zeros()
+    limits: dict[str, Any] = {"atol": _DIGITS, "btol": _DIGITS, "conlim": 0.0}
+    return lambda right: np.asarray(lsmr(rows, weight * right, **limits)[0])
 
 
 def _algebra(geometry: Geometry, xi: Floats) -> Floats:

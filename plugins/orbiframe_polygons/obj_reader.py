@@ -31,7 +31,8 @@ def read(path: Path) -> Polyhedron:
     """The polyhedron of an OBJ file: polygons, normals, and colours after the coordinates (`v x y z r g b`).
 
     Negative indices count back from where they stand. Names, groups and texture coordinates are skipped, and no
-    material file is opened. Normals are kept where all corners of each vertex have the same normal. Raises FormatError
+    material file is opened. Normals are kept where all corners of each vertex have the same normal; where the file has
+    none, corners may name them anyhow. Raises FormatError
     with the line for anything else that the format does not know, free-form curves included.
 
     Source: Wavefront, Advanced Visualizer manual, appendix B1: Object files.
@@ -104,7 +105,7 @@ def _corners(faces: Text, vertices: tuple[Ints, int], normals: tuple[Ints, int])
     require_sizes(sizes, place)
     values, slot = _numbers_and_slots(faces)
     points = corners(_from_zero(faces, values[slot == 0], vertices[0]), sizes, vertices[1], place)
-    if (slot == 2).sum() != len(points):
+    if not normals[1] or (slot == 2).sum() != len(points):
         return points, None
     return points, corners(_from_zero(faces, values[slot == 2], normals[0]), sizes, normals[1], place, noun="normal")
 

@@ -10,14 +10,19 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import FormatError, Polyhedron
+from orbiframe import FormatError, Notice, Polyhedron
+from orbiframe_polygons import off_binary
 from orbiframe_polygons.faces import colours, corners, offsets_of, ragged, require_colours, require_sizes, whole
 from orbiframe_polygons.text import Text, read_text, shown
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-HEADER = re.compile(rb"(ST)?(C)?(N)?(4)?(n)?OFF")
+# Some write the counts straight after the word.
+HEADER = re.compile(rb"(ST)?(C)?(N)?(4)?(n)?OFF(?=\d|$)")
+# So many bytes are looked through for the word BINARY.
+START = 4096
+BINARY = re.compile(rb"(?:#[^\n]*\n|\s)*+(ST)?(C)?(N)?(4)?(n)?OFF[ \t]+BINARY[^\n]*\n")
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +37,10 @@ class Kind:
     def widths(self) -> tuple[int, ...]:
         """How many numbers a vertex may have: colours have three or four components."""
         plain = 3 + 3 * self.normals + 2 * self.texture
-        return (plain + 3, plain + 4) if self.coloured else (plain,)
+        if self.coloured:
+            return (plain + 3, plain + 4)
+        # Some leave the C away.
+        return (plain,) if self.normals or self.texture else (plain, plain + 3, plain + 4)
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,22 +57,17 @@ def read(path: Path) -> Polyhedron:
     """The polyhedron of an OFF file: polygons, normals (N), colours of vertices (C) and of faces.
 
     The word OFF may be missing, and the counts may follow it on its line. Vertices and faces stand one to a line, or
-    anyhow where nothing but them is in the file. Texture coordinates (ST) are skipped. Colours count to 1 or to 255.
-    Raises FormatError with the line for anything that is not so, for 4OFF and nOFF (points of another dimension), for
-    binary files, and where the counts differ from what follows; only faces beyond the declared ones are left out with a
-    warning.
+    anyhow where nothing but them is in the file. Texture coordinates (ST) are skipped. Colours count to 1 or to 255;
+    vertices of six or seven numbers have one, with a notice, even where the header does not say so. Files with the word
+    BINARY hold big-endian numbers. Raises FormatError with the line for anything that is not so, for 4OFF and nOFF
+    (points of another dimension), and where the counts differ from what follows; only faces beyond the declared ones
+    are left out with a warning.
 
     Source: http://www.geomview.org/docs/html/OFF.html
     """
-    kind, text = _kind(read_text(path))
-    try:
-        parts = _by_lines(kind, text)
-    except FormatError:
-        # Numbers may be broken into lines anyhow; where they do not even then fit the counts, the first reason stands.
-        found = _loose_vertices(kind, text) or _loose(kind, text)
-        if found is None:
-            raise
-        parts = found
+    with path.open("rb") as file:
+        head = BINARY.match(file.read(START))
+    kind, parts = _text_parts(path) if head is None else _binary_parts(path, head)
     normals, colors = _tables(path, kind, parts.points)
     return Polyhedron.from_corners(
         parts.points[:, :3],
@@ -76,12 +79,37 @@ def read(path: Path) -> Polyhedron:
     )
 
 
+def _binary_parts(path: Path, head: re.Match[bytes]) -> tuple[Kind, Parts]:
+    texture, coloured, normals, four, general = (part is not None for part in head.groups())
+    if four or general:
+        raise FormatError(f"{path}: found {shown(head[0].strip())}, but only points of three dimensions are read")
+    kind = Kind(texture, coloured, normals)
+    parts = Parts(
+        *off_binary.parts(path, path.read_bytes(), head.end(), kind.widths[-1] if coloured else kind.widths[0])
+    )
+    require_colours(parts.face_colors, path)
+    return kind, parts
+
+
+def _text_parts(path: Path) -> tuple[Kind, Parts]:
+    kind, text = _kind(read_text(path))
+    try:
+        parts = _by_lines(kind, text)
+    except FormatError:
+        # Numbers may be broken into lines anyhow; where they do not even then fit the counts, the first reason stands.
+        found = _loose_vertices(kind, text) or _loose(kind, text)
+        if found is None:
+            raise
+        parts = found
+    return kind, parts
+
+
 def _kind(text: Text) -> tuple[Kind, Text]:
     """The kind of the file, and its text after the word that says so."""
     if not len(text):
         raise FormatError(f"{text.path}: the file holds no words; an OFF file starts with OFF and its counts")
     words = text.line(0).split()
-    found = HEADER.fullmatch(words[0])
+    found = HEADER.match(words[0])
     if found is None and not words[0].isdigit():
         text.refuse(0, f"found {shown(words[0])}, but an OFF file starts with OFF (or COFF, NOFF, CNOFF, STOFF)")
     if found is None:
@@ -91,11 +119,10 @@ def _kind(text: Text) -> tuple[Kind, Text]:
         text.refuse(
             0, f"found {shown(words[0])}, but only points of three dimensions are read, not of another dimension"
         )
-    if words[1:2] == [b"BINARY"]:
-        text.refuse(0, "this is binary OFF, which is not read; save the file as text")
-    if len(text) == 1 and len(words) == 1:
+    if len(text) == 1 and words == [found[0]]:
         text.refuse(0, "the file ends after its header; the counts of vertices, faces and edges are required")
-    return Kind(texture, coloured, normals), text.without_first_word()
+    kind = Kind(texture, coloured, normals)
+    return kind, text.without_first_word() if words[0] == found[0] else text.without_start(found.end())
 
 
 # ---- one vertex or face to a line ---------------------------------------------------------------------------------
@@ -148,7 +175,12 @@ def _tables(path: Path, kind: Kind, points: Floats) -> tuple[Floats | None, Floa
     """Normals and colours of the vertices."""
     normals = points[:, 3:6] if kind.normals else None
     start = 6 if kind.normals else 3
-    colors = colours(points[:, start : points.shape[1] - 2 * kind.texture]) if kind.coloured else None
+    unsaid = not (kind.coloured or kind.normals or kind.texture) and points.shape[1] > 3
+    coloured = kind.coloured or unsaid
+    colors = colours(points[:, start : points.shape[1] - 2 * kind.texture]) if coloured else None
+    if unsaid:
+        more = points.shape[1] - 3
+        warnings.warn(f"{path.name}: vertices have {more} more numbers, read as colours", Notice, stacklevel=2)
     require_colours(colors, path)
     return normals, colors
 

@@ -9,18 +9,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import FormatError, Polyhedron
-from orbiframe_polygons.faces import corners, offsets_of, require_colours, require_finite, require_sizes
+from orbiframe_polygons.faces import corners, offsets_of, require_colours, require_finite, require_sizes, whole
 from orbiframe_polygons.ply_body import Table, tables
 from orbiframe_polygons.ply_header import parse
+from orbiframe_polygons.strips import RESTART, triangles_of_strips
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
+
+STRIPS = "tristrips"
 
 
 def read(path: Path) -> Polyhedron:
     """The polyhedron of a PLY file: polygons, normals, colours of vertices and faces.
 
-    Other elements and properties are skipped. Raises FormatError with the line or byte where header and body do not
+    Strips of triangles are read, each ended by -1 or by the end of its list. Other elements and properties are skipped.
+    Raises FormatError with the line or byte where header and body do not
     fit, where an index is out of range and where a coordinate is not finite.
 
     Source: G. Turk, The PLY Polygon File Format, 1994.
@@ -28,21 +32,21 @@ def read(path: Path) -> Polyhedron:
     data = path.read_bytes()
     header = parse(path, data)
     found = {table.element.name: table for table in tables(path, data, header)}
-    for name in ("vertex", "face"):
-        if name not in found:
-            raise FormatError(f"{path}: the header declares no element '{name}'; polygons need both vertex and face")
-    vertex, face = found["vertex"], found["face"]
+    if "vertex" not in found or not found.keys() & {"face", STRIPS}:
+        missing = "vertex" if "vertex" not in found else "face"
+        raise FormatError(f"{path}: the header declares no element '{missing}'; polygons need both vertex and face")
+    vertex, face = found["vertex"], found.get("face")
     vertices = _columns(path, vertex, ("x", "y", "z"))
     if vertices is None:
         raise FormatError(f"{path}: the element 'vertex' lacks one of the properties x, y and z")
-    offsets, tail = _faces(path, face, len(vertices))
+    offsets, tail = _all_faces(path, found, len(vertices))
     return Polyhedron.from_corners(
         vertices,
         offsets,
         tail,
         normals=_columns(path, vertex, ("nx", "ny", "nz")),
         colors=_colours(path, vertex),
-        face_colors=_colours(path, face),
+        face_colors=None if face is None or STRIPS in found else _colours(path, face),
     )
 
 
@@ -58,13 +62,40 @@ def _columns(path: Path, table: Table, names: tuple[str, ...]) -> Floats | None:
     return values
 
 
+def _all_faces(path: Path, found: dict[str, Table], vertex_count: int) -> tuple[Ints, Ints]:
+    """The faces, and after them the triangles of the strips."""
+    kinds = {"face": _faces, STRIPS: _strips}
+    lists = [read(path, found[name], vertex_count) for name, read in kinds.items() if name in found]
+    sizes = np.concatenate([np.diff(offsets) for offsets, _ in lists])
+    return offsets_of(sizes), np.concatenate([tail for _, tail in lists])
+
+
+def _strips(path: Path, strips: Table, vertex_count: int) -> tuple[Ints, Ints]:
+    """The triangles of all strips; -1 starts a strip anew."""
+    lists = _list(path, strips)
+    order = whole(
+        strips.columns[lists], lambda k: strips.place(int(np.searchsorted(np.cumsum(strips.sizes[lists]), k, "right")))
+    )
+    # Every list starts anew too.
+    order = np.insert(order, offsets_of(strips.sizes[lists])[:-1], RESTART)
+    made = triangles_of_strips(order)
+    sizes = np.full(len(made), 3, dtype=np.intp)
+    return offsets_of(sizes), corners(made.ravel(), sizes, vertex_count, lambda _: f"{path}: the strips")
+
+
 def _faces(path: Path, face: Table, vertex_count: int) -> tuple[Ints, Ints]:
+    name = _list(path, face)
+    sizes = face.sizes[name]
+    require_sizes(sizes, face.place)
+    return offsets_of(sizes), corners(face.columns[name], sizes, vertex_count, face.place)
+
+
+def _list(path: Path, table: Table) -> str:
+    """The name of the list of corners."""
     for name in ("vertex_indices", "vertex_index"):
-        if name in face.sizes:
-            sizes = face.sizes[name]
-            require_sizes(sizes, face.place)
-            return offsets_of(sizes), corners(face.columns[name], sizes, vertex_count, face.place)
-    raise FormatError(f"{path}: the element 'face' has no list 'vertex_indices'")
+        if name in table.sizes:
+            return name
+    raise FormatError(f"{path}: the element '{table.element.name}' has no list 'vertex_indices'")
 
 
 def _colours(path: Path, table: Table) -> Floats | None:

@@ -23,6 +23,8 @@ HEADER_SIZE, RECORD_SIZE = 84, 50
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 FACET = [b"facet", b"outer", b"vertex", b"vertex", b"vertex", b"endloop", b"endfacet"]
 BREAK = re.compile(rb"(?i) (?=(?:solid|facet|outer|vertex|endloop|endfacet|endsolid)(?: |$))")
+# Some write the words of an end apart.
+APART = re.compile(rb"(?im)^([ \t]*)end[ \t]+(?=(?:solid|facet|loop)\b)")
 SPACE = re.compile(rb"\s+")
 FACET_WORDS = [5, 2, 4, 4, 4, 1, 1]
 
@@ -87,7 +89,7 @@ def _ends_in_order(path: Path) -> bool:
     with path.open("rb") as file:
         file.seek(max(0, path.stat().st_size - SAMPLE))
         end = file.read().replace(b"\r", b"\n").rstrip()
-    return b"endsolid" in end.rpartition(b"\n")[2].lower()
+    return b"endsolid" in _joined(end.rpartition(b"\n")[2]).lower()
 
 
 def _require_text(path: Path) -> None:
@@ -118,12 +120,18 @@ def _pieces(path: Path, shaped: Callable[[bytes], bytes] = bytes) -> Iterator[tu
         while more := file.read(BLOCK):
             while more.endswith(b"\r") and (after := file.read(1)):  # a LF after it belongs to a CR
                 more += after
-            rest = shaped(rest + with_line_feeds(path, more, line=line + rest.count(b"\n")))
+            rest = shaped(_joined(rest + with_line_feeds(path, more, line=line + rest.count(b"\n"))))
             end = _facets_end(rest)
             yield rest[:end], False
             line += rest.count(b"\n", 0, end)
             rest = rest[end:]
         yield rest, True
+
+
+def _joined(content: bytes) -> bytes:
+    """The text with `end solid` in one word."""
+    apart = any(word in content for word in (b"end ", b"END ", b"End ", b"end\t", b"END\t"))
+    return APART.sub(rb"\1end", content) if apart else content
 
 
 def _facets_end(content: bytes) -> int:

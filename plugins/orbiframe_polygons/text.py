@@ -84,6 +84,12 @@ class Text:
         begin[0], words[0] = self.end[0] - len(rest), words[0] - 1
         return replace(self, begin=begin, words=words)
 
+    def without_start(self, length: int) -> Text:
+        """The same text without the first bytes of its first word, which is longer."""
+        begin = self.begin.copy()
+        begin[0] += length
+        return replace(self, begin=begin)
+
     def line(self, row: int) -> bytes:
         """The bytes of one line, from its first word on."""
         return self.data[self.begin[row] : self.end[row]].tobytes()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import NoReturn
 from xml.parsers import expat
 
 from orbiframe import FormatError
@@ -13,26 +14,29 @@ Text = Callable[[str], None]
 End = Callable[[str], None]
 
 
-def parse(path: Path, data: bytes, start: Start, text: Text, end: End) -> None:
+def parse(path: Path, data: bytes, start: Start, text: Text, end: End, *, whole: bool = True) -> None:
     """Call `start` with name, attributes and line of every element, `text` with its characters, and `end`.
 
-    Prefixes of names are taken away. Raises FormatError with the line for what is no XML, and for a document type: with
-    it go all entities.
+    whole: whether the data ends as XML; else what is left open at its end is no error.
+
+    Prefixes of names are taken away. A document type is passed over; what it names is never opened. Raises FormatError
+    with the line for what is no XML, and for entities.
     """
     parser = expat.ParserCreate()
     parser.buffer_text = True
 
-    def refuse(*_: object) -> None:
+    def refuse(*_: object) -> NoReturn:
         line = parser.CurrentLineNumber
-        raise FormatError(f"{path}, line {line}: XML with a document type or entities is not read; take them out")
+        raise FormatError(f"{path}, line {line}: XML with entities is not read; take them out")
 
-    parser.StartDoctypeDeclHandler = refuse
     parser.EntityDeclHandler = refuse
+    parser.SkippedEntityHandler = refuse
+    parser.ExternalEntityRefHandler = refuse
     parser.StartElementHandler = lambda name, attributes: start(_local(name), attributes, parser.CurrentLineNumber)
     parser.CharacterDataHandler = text
     parser.EndElementHandler = lambda name: end(_local(name))
     try:
-        parser.Parse(data, True)
+        parser.Parse(data, whole)
     except expat.ExpatError as error:
         raise FormatError(
             f"{path}, line {error.lineno}: this is no sound XML: {expat.ErrorString(error.code)}"

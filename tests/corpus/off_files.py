@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
+import struct
+
 from corpus.answers import CORNERS, GOOD, NO_NUMBERS, ONES, TETRAHEDRON, Mesh, Rows, named
 
 POINT_LINES = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
 FACE_LINES = "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n"
 OFF = "OFF\n4 4 6\n" + POINT_LINES + FACE_LINES
 WORDS = OFF.split()
+
+
+def binary(head: bytes, colour: list[float], face_colour: list[float]) -> bytes:
+    """The tetrahedron in big-endian numbers."""
+    rows = b"".join(struct.pack(f">{3 + len(colour)}f", *point, *colour) for point in CORNERS)
+    count = struct.pack(">i", len(face_colour)) + struct.pack(f">{len(face_colour)}f", *face_colour)
+    return head + struct.pack(">3i", 4, 4, 6) + rows + b"".join(struct.pack(">4i", 3, *f) + count for f in TETRAHEDRON)
+
+
+BINARY = binary(b"OFF BINARY\n", [], [])
+COLOURED_BINARY = binary(b"COFF BINARY\n", [1, 0.5, 0, 1], [0.5, 0.5, 0.25])
 
 
 def off() -> Rows:
@@ -26,6 +39,9 @@ def off() -> Rows:
 OFF_READABLE: list[tuple[str, str | bytes, Mesh | str]] = [
     ("plain", OFF, GOOD),
     ("counts on the first line", OFF.replace("OFF\n", "OFF "), GOOD),
+    ("header and counts in one word", OFF.replace("OFF\n", "OFF"), GOOD),
+    ("binary", BINARY, GOOD),
+    ("binary with colours", COLOURED_BINARY, GOOD),
     ("no header", OFF.replace("OFF\n", ""), GOOD),
     ("no edge count", OFF.replace("4 4 6", "4 4"), GOOD),
     ("wrong edge count", OFF.replace("4 4 6", "4 4 999999999999"), GOOD),
@@ -111,7 +127,16 @@ OFF_DAMAGED: list[tuple[str, str | bytes, Mesh | str]] = [
     ("html", "<html><body>404 not found</body></html>", "line 1"),
     ("four dimensions", OFF.replace("OFF", "4OFF"), "line 1.*another dimension"),
     ("n dimensions", OFF.replace("OFF\n", "nOFF\n5\n"), "line 1.*another dimension"),
-    ("binary", "OFF BINARY\n" + "x" * 90, "line 1.*binary"),
+    ("binary that is none", "OFF BINARY\n" + "x" * 90, "byte 11.*binary"),
+    ("binary cut short", BINARY[:-4], "byte .*does not fit"),
+    ("binary with more", BINARY + bytes(4), "byte .*cut short|declared|does not end"),
+    ("binary with a huge count", BINARY.replace(b"\0\0\0\4", b"\x7f\0\0\4", 1), "byte 11.*declared"),
+    (
+        "binary with an index too large",
+        BINARY.replace(struct.pack(">5i", 3, 2, 0, 3, 0), struct.pack(">5i", 3, 2, 0, 4, 0)),
+        "byte .*vertex 4",
+    ),
+    ("header and counts in one word of another dimension", OFF.replace("OFF\n", "4OFF"), "line 1.*another dimension"),
     ("negative count", OFF.replace("4 4 6", "-4 4 6"), "line 2"),
     ("count with a point", OFF.replace("4 4 6", "4.5 4 6"), "line 2"),
     ("four counts", OFF.replace("4 4 6", "4 4 6 8"), "line 2"),
@@ -131,7 +156,7 @@ OFF_DAMAGED: list[tuple[str, str | bytes, Mesh | str]] = [
     (
         "colours without the header",
         "OFF\n4 4 6\n" + POINT_LINES.replace("\n", " 1 0 0\n") + FACE_LINES,
-        "line 3.*6 numbers",
+        Mesh(CORNERS, TETRAHEDRON, warned=True),
     ),
     ("normals not there", OFF.replace("OFF", "NOFF"), "line 3.*3 numbers"),
     ("a colour below zero", "COFF\n4 4 6\n" + POINT_LINES.replace("\n", " -1 0 0\n") + FACE_LINES, "colour"),

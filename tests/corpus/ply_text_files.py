@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from corpus.answers import GOOD, NO_NUMBERS, ONES, Mesh, Rows, named
+from corpus.answers import CORNERS, GOOD, NO_NUMBERS, ONES, Mesh, Rows, named
 from corpus.off_files import FACE_LINES, POINT_LINES
 
 PLY_HEADER = """ply
@@ -181,6 +181,21 @@ PLY_DAMAGED: list[tuple[str, str | bytes, Mesh | str]] = [
         + FACE_LINES,
         "colour",
     ),
-    ("triangle strips", header(element_face="element tristrips 1") + POINT_LINES + "4 0 1 2 3\n", "no element 'face'"),
+    (
+        "triangle strips",
+        header(element_face="element tristrips 1") + POINT_LINES + "4 0 1 2 3\n",
+        Mesh(CORNERS, [[0, 1, 2], [1, 3, 2]]),
+    ),
+    (
+        "triangle strips with restarts",
+        header(element_face="element tristrips 2") + POINT_LINES + "7 0 2 1 -1 0 1 3\n7 1 2 3 3 -1 2 0\n",
+        Mesh(CORNERS, [[0, 2, 1], [0, 1, 3], [1, 2, 3]]),
+    ),
+    (
+        "strips with an index too large",
+        header(element_face="element tristrips 1") + POINT_LINES + "3 0 1 4\n",
+        "vertex 4",
+    ),
+    ("strips with a fraction", header(element_face="element tristrips 1") + POINT_LINES + "3 0 1 1.5\n", "line 1.*1.5"),
     ("utf-16", PLY.encode("utf-16"), "line 1"),
 ]

@@ -10,7 +10,7 @@ from hypothesis import given, settings, strategies as st
 from lifted_sites import WORDS, delaunay_areas, group_of, random_sites
 
 from orbiframe.delaunay.lawson_flips import wants_flip
-from orbiframe.delaunay.point_walk import locate
+from orbiframe.delaunay.point_walk import find
 from orbiframe.delaunay.polygon_fan import polygon_triangulation
 from orbiframe.delaunay.site_triangulation import delaunay, delaunay_of_vertices
 from orbiframe.delaunay.sites import vertex_points
@@ -157,7 +157,7 @@ def test_located_points_lie_in_their_triangles(word):
     group = group_of(word)
     t = delaunay(polygon_triangulation(group), random_sites(group, 60, 1)).triangulation
     points = random_sites(group, 500, 2)
-    face, x = locate(t, points)
+    face, x = find(t, points)
     share = np.linalg.solve(np.swapaxes(t.corners[face], 1, 2), x[..., None])[..., 0]
     assert share.min() > -1e-9
     assert same_places(group, group.geometry.act(t.placement[face], x), points.x) < 1e-8

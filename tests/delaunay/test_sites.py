@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from lifted_sites import group_of, random_sites
 from reference_surfaces import ALL, triangulated
 
-from orbiframe.delaunay.point_walk import locate
+from orbiframe.delaunay.point_walk import find
 from orbiframe.delaunay.polygon_fan import polygon_triangulation
 from orbiframe.delaunay.site_triangulation import delaunay
 from orbiframe.delaunay.sites import lloyd, poisson_disc, uniform_points
@@ -63,7 +65,7 @@ def test_the_cells_of_middle_and_corner_of_the_octagon_are_equal():
 def test_uniform_points_fall_into_triangles_by_area(word):
     t, start = scattered(word, 12, 3), polygon_triangulation(group_of(word))
     points = uniform_points(start, 6000, seed=4)
-    count = np.bincount(locate(t, points).face, minlength=t.face_count)
+    count = np.bincount(find(t, points).face, minlength=t.face_count)
     expected = 6000 * t.areas / t.areas.sum()
     assert (np.abs(count - expected) < 5 * np.sqrt(expected) + 1).all()
     again = uniform_points(start, 6000, seed=4)
@@ -114,6 +116,18 @@ def test_the_domain_of_splines_has_as_many_vertices_as_wanted(name):
         assert t.gluing_defect < 1e-8
     assert smallest_angle(t) > 15
     np.testing.assert_array_equal(t.corners, spline_domain(mapped, count).corners)
+
+
+@pytest.mark.parametrize(("name", "times"), [("sphere", 4), ("torus", 3), ("octagon", 3)])
+def test_rounding_does_not_choose_the_triangles_of_a_domain(name, times):
+    """Of a symmetric mesh, where many sites lie on one circle: noise as large as that of another processor."""
+    mapped, rng = triangulated(name, times), np.random.default_rng(0)
+    wanted = spline_domain(mapped, 15)
+    for _ in range(5):
+        noisy = mapped.orbifold.geometry.settle(mapped.points * (1 + 1e-15 * rng.normal(size=mapped.points.shape)))
+        found = spline_domain(replace(mapped, points=noisy), 15)
+        np.testing.assert_array_equal(found.vertex, wanted.vertex)
+        np.testing.assert_allclose(found.edge_lengths, wanted.edge_lengths, atol=1e-10)
 
 
 def test_a_domain_has_no_more_vertices_than_the_mesh():

@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from documents import ROOT, section, table_rows
 
-from orbiframe import FormatError
+from orbiframe import FormatError, fit
 from orbiframe.cli import plugin as commands
 from orbiframe.components.options import options_of
 from orbiframe.components.registry import Registry
 from orbiframe.files import gate
-from orbiframe.fitting import pipeline
+from orbiframe.fitting import mapping
 from orbiframe.fitting.config import OPEN_NAMES, STEPS, Config, Output
 from orbiframe.plugin import DEFAULT_MARKER
 
@@ -39,7 +39,7 @@ def column(page: Path, heading: str) -> list[str]:
     return [unquoted(row[0]) for row in table_rows(section(page, heading))]
 
 
-@pytest.mark.parametrize("command", ["fit", "info", "convert", "group", "draw", "plugins"])
+@pytest.mark.parametrize("command", ["fit", "info", "convert", "group", "draw", "plugins", "warm-up"])
 def test_every_option_of_a_command_is_in_its_table(command, registry):
     parser = argparse.ArgumentParser()
     registry.load("command", command)(parser)
@@ -63,7 +63,7 @@ def test_every_option_of_a_table_is_in_its_section(table, registry):
 
 def _defaults(kind: str, name: str, registry: Registry) -> dict[str, str]:
     """The options of the default component of a step; of all that the pipeline may choose, where it is open."""
-    choices = {"parametrizer": list(pipeline.PARAMETRIZER.values()), "marker": [DEFAULT_MARKER]}
+    choices = {"parametrizer": list(mapping.PARAMETRIZER.values()), "marker": [DEFAULT_MARKER]}
     chosen = choices.get(kind, []) if name in OPEN_NAMES else [name]
     return {o.name: str(o.default) for name in chosen for o in options_of(registry.load(kind, name))}
 
@@ -79,7 +79,7 @@ def test_every_option_of_every_basis_is_in_its_table(registry):
     assert sorted(tuple(map(unquoted, row[:3])) for row in rows) == sorted(declared)
 
 
-@pytest.mark.parametrize("name", sorted(set(pipeline.PARAMETRIZER.values())))
+@pytest.mark.parametrize("name", sorted(set(mapping.PARAMETRIZER.values())))
 def test_every_choice_of_weights_is_named(name, registry):
     weights = next(o for o in options_of(registry.load("parametrizer", name)) if o.name == "weights")
     row = next(row for row in table_rows(section(REFERENCE / "config.md", "map")) if unquoted(row[0]) == "weights")
@@ -143,7 +143,7 @@ def _formats() -> list[list[str]]:
 
 def test_every_key_of_the_report_is_in_its_table(registry):
     config = Config.load(overrides=["basis.size=50"])
-    report = pipeline.fit(ROOT / "datasets" / "cube.off", config, registry).report
+    report = fit(ROOT / "datasets" / "cube.off", config, registry).report
     keys = [unquoted(row[0]) for row in table_rows((REFERENCE / "report.md").read_text())]
     assert keys == list(_keys(report))
 

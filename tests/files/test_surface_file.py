@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import io
-import json
 import re
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
+import hard_surfaces as hard
 import numpy as np
 import pytest
 from fitted import REGISTRY, config, fitted, mesh_of
+from surface_files import changed, with_about, without_sums
 
 from orbiframe.errors import FormatError, OrbiframeError, UsageError
 from orbiframe.files.surface_file import load_surface, save_surface
@@ -27,22 +28,6 @@ def saved(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("surface") / "double_torus.npz"
     save_surface(fitted("double torus", SIZE).surface, path)
     return path
-
-
-def changed(path: Path, target: Path, change: Callable[[dict[str, np.ndarray]], None]) -> Path:
-    """A copy of a surface file with other arrays."""
-    with np.load(path) as archive:
-        arrays = dict(archive)
-    change(arrays)
-    np.savez(target, **arrays)
-    return target
-
-
-def with_about(path: Path, target: Path, **entries: object) -> Path:
-    def change(arrays: dict[str, np.ndarray]) -> None:
-        arrays["about"] = np.array(json.dumps({**json.loads(str(arrays["about"])), **entries}))
-
-    return changed(path, target, change)
 
 
 def assert_same_bits(a: OrbifoldSurface, b: OrbifoldSurface) -> None:
@@ -75,6 +60,22 @@ def test_a_loaded_surface_evaluates_to_the_same_bits(name: str, tmp_path: Path) 
     assert loaded.triangulation.weights == surface.triangulation.weights
 
 
+def test_flips_of_needles_are_saved(tmp_path: Path) -> None:
+    """A plate with triangles without height; a file that flips other edges than those of two triangles is refused."""
+    surface = pipeline.fit(hard.with_slivers(hard.plate(1, 2, 2), 0.2, 0.0, 2), config(SIZE), REGISTRY).surface
+    assert len(surface.refinement.flips.halfedge) > 100
+    save_surface(surface, tmp_path / "s.npz")
+    assert_same_bits(surface, load_surface(tmp_path / "s.npz", REGISTRY))
+
+    def refused(change: Callable[[dict[str, np.ndarray]], None], law: str) -> None:
+        with pytest.raises(FormatError, match=rf"wild\.npz: the array 'flip_halfedge' breaks a law: {law}"):
+            load_surface(changed(tmp_path / "s.npz", tmp_path / "wild.npz", change), REGISTRY)
+
+    refused(lambda arrays: arrays["flip_halfedge"].__iadd__(10**6), "halfedges are 0 to")
+    refused(lambda arrays: arrays["flip_halfedge"].__setitem__((5, 1), arrays["flip_halfedge"][5, 0]), "an edge of two")
+    refused(lambda arrays: arrays["flip_halfedge"].__setitem__(5, arrays["flip_halfedge"][6]), "the two halfedges are")
+
+
 def test_options_of_the_basis_and_place_in_space_are_kept(tmp_path: Path) -> None:
     mesh = mesh_of("torus")
     moved = mesh.with_vertices(mesh.vertices * 1e-3 + 50)
@@ -82,7 +83,7 @@ def test_options_of_the_basis_and_place_in_space_are_kept(tmp_path: Path) -> Non
     save_surface(surface, tmp_path / "s.npz")
     loaded = load_surface(tmp_path / "s.npz", REGISTRY)
     assert_same_bits(surface, loaded)
-    assert loaded.basis_options == {"size": 50, "width": 2.0, "reach": 2.5}
+    assert loaded.basis_options == {"size": 50, "width": 2.0, "reach": 2.5, "grading": 0.3}
 
 
 def test_saving_twice_gives_the_same_arrays_and_replaces_the_file(saved: Path, tmp_path: Path) -> None:
@@ -175,7 +176,7 @@ def test_other_files_are_refused_by_name(name: str, tmp_path: Path) -> None:
         load_surface(path, REGISTRY)
 
 
-@pytest.mark.parametrize("version", [0, 2, "1"])
+@pytest.mark.parametrize("version", [0, 3, "1", True, 1.5, None])
 def test_another_version_is_named(saved: Path, tmp_path: Path, version: object) -> None:
     with pytest.raises(FormatError, match=f"version {version} of 'orbiframe surface' is not known"):
         load_surface(with_about(saved, tmp_path / "new.npz", version=version), REGISTRY)
@@ -191,6 +192,7 @@ def test_a_missing_array_is_named(saved: Path, tmp_path: Path) -> None:
 def test_coefficients_must_fit_the_basis(saved: Path, tmp_path: Path) -> None:
     def change(arrays: dict[str, np.ndarray]) -> None:
         arrays["coefficients"] = arrays["coefficients"][:-1]
+        without_sums(arrays)
 
     with pytest.raises(FormatError, match=f"{SIZE - 1} coefficients .* {SIZE} functions"):
         load_surface(changed(saved, tmp_path / "less.npz", change), REGISTRY)
@@ -233,7 +235,7 @@ def test_a_full_disc_leaves_the_old_file(saved: Path, tmp_path: Path, monkeypatc
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(np, "savez_compressed", full)
-    with pytest.raises(OrbiframeError, match=r"s\.npz: the surface cannot be written: No space left"):
+    with pytest.raises(OrbiframeError, match=r"s\.npz cannot be written: No space left"):
         save_surface(surface, target)
     assert [path.name for path in tmp_path.iterdir()] == ["s.npz"]
     assert target.read_text() == "old"

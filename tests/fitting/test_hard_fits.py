@@ -16,13 +16,24 @@ from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.testing.polyhedra import reference_polyhedra
 
 
-def test_a_long_finger_gets_a_warning() -> None:
+def test_a_warning_comes_where_digits_are_missed_in_a_fit() -> None:
     mesh = hard.with_finger(hard.plate_cells(1, 1), (0, 0, 0), 18, 2)
     report = pipeline.fit(mesh, config(60), REGISTRY).report
     assert report["map"]["not_positive"] == 0
     assert 6 <= report["map"]["crowding"]["digits_lost"] <= 9
     assert 1e-20 < report["map"]["crowding"]["area_ratio"] < 1e-12
-    assert "of 16 digits are lost" in summary(report)
+    assert "warning" not in summary(report)
+    report["map"]["crowding"]["digits_lost"] = 13.2
+    assert "13 of 16 digits are lost" in summary(report)
+
+
+def test_a_finger_of_80_radii_is_fitted_as_well_as_a_short_one() -> None:
+    """In both cases 300 functions for about the same number of radii of the finger: the error is that of its tip."""
+    slab = {(i, j, 0) for i in range(3) for j in range(3)}
+    short, long = (pipeline.fit(hard.with_finger(slab, (0, 0, 0), r, 1), config(300), REGISTRY) for r in (5, 80))
+    assert long.report["map"]["not_positive"] == 0
+    assert long.report["map"]["crowding"]["digits_lost"] < 4
+    assert long.report["fit"]["rms"] < 1.5 * short.report["fit"]["rms"]
 
 
 def test_diagonals_are_told_and_a_cube_gets_no_warning() -> None:

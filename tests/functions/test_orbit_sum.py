@@ -12,7 +12,8 @@ from hypothesis import given, settings, strategies as st
 from third_derivatives import error_of_third_derivatives
 
 from orbiframe.errors import FitError
-from orbiframe.functions.orbit_sum import Pairs, reaching_pairs, versine_distance
+from orbiframe.functions.lifted_centres import LiftedCentres
+from orbiframe.functions.orbit_sum import Pairs, reaching_pairs
 from orbiframe.functions.orbit_sum_basis import OrbitSumBasis
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Orbifold
@@ -53,7 +54,9 @@ def brute_force(orbifold: Orbifold, centres: Points, support: np.ndarray, points
     """The same sum over all elements of the group far beyond the reach, for an orbifold with one patch."""
     geometry = orbifold.geometry
     radius = geometry.distance(geometry.origin, np.concatenate([centres.x, points.x])).max()
-    group = orbifold.lifts(0, 2 * radius + versine_distance(geometry.curvature, support).max())[1]
+    half = np.sqrt(support.max() / 2)
+    reach = {1: np.arcsin, 0: np.asarray, -1: np.arcsinh}[geometry.curvature](half)
+    group = orbifold.lifts(0, 2 * radius + 2 * reach)[1]
     images = np.einsum("gij,mj->gmi", group, centres.x)
     c = geometry.versine(points.x[:, None, None], geometry.settle(images)[None])
     return np.where(c < support, 2 - c / (1 + c), 0).sum(axis=1)
@@ -72,14 +75,16 @@ def test_pairs_are_those_of_brute_force(seed: int, name: str, narrow: float) -> 
     about = centres.x[rng.integers(12, size=80)]
     near = geometry.exp(about, step[:, None] * geometry.frame(about)[:, :, 0])
     points = Points(np.zeros(140, dtype=int), np.concatenate([spread.x, near]))
-    found = blocks_as_dense(list(reaching_pairs(orbifold, centres, support, points)), (140, 12))
+    found = blocks_as_dense(list(reaching_pairs(LiftedCentres(orbifold, centres, support), points)), (140, 12))
     np.testing.assert_allclose(found, brute_force(orbifold, centres, support, points), atol=1e-9)
 
 
 def test_each_row_lists_its_centres_in_order_and_the_same_twice() -> None:
     orbifold, rng = surfaces.octagon(), np.random.default_rng(3)
     centres, points = (surfaces.random_points(orbifold, n, rng) for n in (30, 500))
-    first, again = (list(reaching_pairs(orbifold, centres, np.full(30, 1.5), points, slopes=True)) for _ in range(2))
+    first, again = (
+        list(reaching_pairs(LiftedCentres(orbifold, centres, np.full(30, 1.5)), points, slopes=True)) for _ in range(2)
+    )
     for a, b in zip(first, again, strict=True):
         assert all((np.diff(a.column[i:j]) >= 0).all() for i, j in zip(a.start, a.start[1:], strict=False))
         for name in ("rows", "start", "column", "versine", "slope"):
@@ -90,7 +95,7 @@ def test_each_row_lists_its_centres_in_order_and_the_same_twice() -> None:
 def test_work_grows_like_the_number_of_pairs(name: str) -> None:
     orbifold, rng = surfaces.ALL[name](), np.random.default_rng(3)
     centres, points = (surfaces.random_points(orbifold, n, rng) for n in (1000, 20000))
-    blocks = list(reaching_pairs(orbifold, centres, np.full(1000, 4 * orbifold.area / 1000), points))
+    blocks = list(reaching_pairs(LiftedCentres(orbifold, centres, np.full(1000, 4 * orbifold.area / 1000)), points))
     pairs = sum(len(block.column) for block in blocks)
     assert pairs > 15 * 20000
     assert sum(block.tests for block in blocks) < 6 * pairs
@@ -103,7 +108,9 @@ def test_hyperbolic_versines_keep_all_digits(distance: float) -> None:
     x = geometry.from_polar(1.3, 0.4)
     y = geometry.exp(x, distance * geometry.frame(x)[:, 1])
     one = Points(np.zeros(1, dtype=int), y[None])
-    block = next(reaching_pairs(orbifold, one, np.array([50.0]), Points(one.patch, x[None]), slopes=True))
+    block = next(
+        reaching_pairs(LiftedCentres(orbifold, one, np.array([50.0])), Points(one.patch, x[None]), slopes=True)
+    )
     with mpmath.workdps(50):
         (a1, a2), (b1, b2) = ([mpmath.mpf(v) for v in p[1:]] for p in (x, y))
         a0, b0 = (mpmath.sqrt(1 + p**2 + q**2) for p, q in ((a1, a2), (b1, b2)))

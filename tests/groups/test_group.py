@@ -115,7 +115,7 @@ def test_far_points_come_home_to_the_digits_that_they_have(text):
     for length in (3, 6, 9):
         y = H2.from_polar(rng.uniform(0, 1, 30), rng.uniform(0, 6, 30))
         for here in y:
-            g = group.element_spin(tuple(rng.choice(letters, length)))
+            g = group.precise_element(tuple(rng.choice(letters, length)))
             x = (g @ PreciseIsometry.translation(-1, here)).place
             if x[0] < 1e9:
                 assert H2.distance(group.reduce(x)[0], here) < 1e-14 * x[0] + 1e-13

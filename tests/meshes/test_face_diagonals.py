@@ -5,14 +5,23 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
-from random_polyhedra import edges_of, face_lists, random_polyhedra
+from random_polyhedra import (
+    bent_polyhedra,
+    edges_of,
+    face_lists,
+    polyhedra_with_doubled_edges,
+    random_polyhedra,
+    with_split_edge,
+)
 
 from orbiframe.errors import TopologyError
-from orbiframe.meshes.face_diagonals import triangle_owner, triangulated
+from orbiframe.meshes.ear_clipping import cut_ears
+from orbiframe.meshes.face_diagonals import cut_into_triangles, outline, triangulated
 from orbiframe.meshes.orientation import reversed_faces
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
-from orbiframe.meshes.surface_type import surface_type
+from orbiframe.meshes.surface_type import SurfaceType, doubled_edges, surface_type
+from orbiframe.meshes.told_by_ends import require_told_by_ends
 from orbiframe.testing.polyhedra import reference_polyhedra
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -111,12 +120,8 @@ def test_surface_vector_area_and_vertices_are_kept(mesh: Polyhedron, seed: int) 
     mixed = reversed_faces(mesh, np.random.default_rng(seed).random(mesh.face_count) < 0.5)
     result = triangulated(mixed)
     assert surface_type(result) == surface_type(mesh)
-    np.testing.assert_array_equal(result.vertices, mesh.vertices)
-    owner = triangle_owner(mixed)
-    np.testing.assert_array_equal(np.bincount(owner), mixed.face_sizes - 2)
-    total = np.zeros((mesh.face_count, 3))
-    np.add.at(total, owner, vector_areas(result))
-    np.testing.assert_allclose(total, vector_areas(mixed), atol=1e-12)
+    np.testing.assert_array_equal(result.vertices[: len(mesh.vertices)], mesh.vertices)
+    np.testing.assert_allclose(total_vector_areas(result, mixed), vector_areas(mixed), atol=1e-12)
 
 
 @settings(max_examples=40, deadline=None)
@@ -129,15 +134,98 @@ def test_twins_of_the_triangles_share_their_ends(mesh: Polyhedron, seed: int) ->
     np.testing.assert_array_equal(result.tail, np.where(same, result.tail[twin], result.head[twin]))
 
 
-def test_a_diagonal_beside_an_edge_with_the_same_ends_keeps_its_own_twin() -> None:
-    """Three quads about two corners: both diagonals and an edge may join vertices 0 and 2."""
-    vertices = np.array([[0, 0, 1], [1, 0.2, 0], [0, 0, -1], [-1, 0.2, 0], [0, 3, 0]], dtype=float)
-    mesh = Polyhedron.from_faces(vertices, [[0, 1, 2, 3], [0, 4, 2, 1], [0, 3, 2, 4]])
+def assert_no_two_edges_alike(result: Polyhedron, expected: SurfaceType) -> None:
+    require_told_by_ends(result, expected)
+    assert not doubled_edges(result).any()
+
+
+def about_two_corners(count: int) -> Polyhedron:
+    """Quads about two corners, each between two vertices of valence 2: the other diagonal of all joins the corners."""
+    turn = 2 * np.pi * np.arange(count) / count
+    ring = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
+    middle = [[0, 2 + k, 1, 2 + (k + 1) % count] for k in range(count)]
+    return Polyhedron.from_faces(np.concatenate([[[0, 0, 3], [0, 0, -3]], ring]), middle)
+
+
+@pytest.mark.parametrize("count", [3, 4, 5, 8, 40])
+def test_quads_about_two_corners_get_no_diagonal_twice(count: int) -> None:
+    mesh = about_two_corners(count)
+    assert_no_two_edges_alike(triangulated(mesh), surface_type(mesh))
+
+
+@pytest.mark.parametrize("depth", [0.0, 0.5, 3.0])
+def test_a_bent_edge_gives_a_closed_mesh(depth: float) -> None:
+    """Both faces at a vertex of valence 2 are cut by a diagonal that joins its neighbours, if each is cut alone."""
+    cube = reference_polyhedra()["cube"]
+    faces, (a, b) = with_split_edge(face_lists(cube), 8, np.random.default_rng(0))
+    middle = (cube.vertices[a] + cube.vertices[b]) / 2
+    points = np.concatenate([cube.vertices, [middle + depth * (middle - cube.vertices.mean(axis=0))]])
+    mesh = Polyhedron.from_faces(points, faces)
     result = triangulated(mesh)
-    joined = np.sum((np.minimum(result.tail, result.head) == 0) & (np.maximum(result.tail, result.head) == 2))
-    assert joined >= 4
+    assert_no_two_edges_alike(result, surface_type(mesh))
+    np.testing.assert_allclose(total_vector_areas(result, mesh), vector_areas(mesh), atol=1e-12)
+
+
+@pytest.mark.parametrize("corners", [4, 5, 6, 7, 40, 999])
+@pytest.mark.parametrize("turn", [0, 1])
+def test_two_faces_on_the_same_corners(corners: int, turn: int) -> None:
+    turned = 2 * np.pi * np.arange(corners) / corners
+    points = np.stack([np.cos(turned), np.sin(turned), 0 * turned], axis=1)
+    face = list(range(corners))
+    mesh = Polyhedron.from_faces(points, [face, np.roll(face[::-1], turn).tolist()])
+    result = triangulated(mesh)
+    assert_no_two_edges_alike(result, surface_type(mesh))
+    assert (vector_areas(result) @ [0, 0, 1] * np.where(cut_into_triangles(mesh).face, -1, 1) > 0).all()
+
+
+@settings(max_examples=150, deadline=None)
+@given(bent_polyhedra(), SEEDS)
+def test_no_diagonal_joins_what_is_joined(mesh: Polyhedron, seed: int) -> None:
+    """Over vertices of valence 2; the vector area of every face is kept, also by points on diagonals."""
+    mixed = reversed_faces(mesh, np.random.default_rng(seed).random(mesh.face_count) < 0.5)
+    result = triangulated(mixed)
+    assert_no_two_edges_alike(result, surface_type(mesh))
+    np.testing.assert_array_equal(result.vertices[: len(mesh.vertices)], mesh.vertices)
+    np.testing.assert_allclose(total_vector_areas(result, mixed), vector_areas(mixed), atol=1e-12)
+    np.testing.assert_array_equal(result.tail[outline(mixed)], mixed.tail)
+    np.testing.assert_array_equal(result.head[outline(mixed)], mixed.head)
+
+
+@settings(max_examples=60, deadline=None)
+@given(polyhedra_with_doubled_edges())
+def test_doubled_edges_of_the_input_stay_and_the_surface_too(mesh: Polyhedron) -> None:
+    result = triangulated(mesh)
     assert surface_type(result) == surface_type(mesh)
-    assert surface_type(Polyhedron.from_faces(vertices, result.triangles)).closed is False
+    ends = np.sort(np.stack([mesh.tail, mesh.head])[:, mesh.representative], axis=0).T.tolist()
+    inner = np.setdiff1d(np.flatnonzero(result.representative), outline(mesh))
+    for a, b in np.sort(np.stack([result.tail, result.head])[:, inner], axis=0).T.tolist():
+        assert [a, b] not in ends or a == b
+
+
+def total_vector_areas(result: Polyhedron, mesh: Polyhedron) -> np.ndarray:
+    total = np.zeros((mesh.face_count, 3))
+    np.add.at(total, cut_into_triangles(mesh).face, vector_areas(result))
+    return total
+
+
+@pytest.mark.parametrize("shape", [(1, 0.0), (1, 0.9), (2, 0.0)])
+def test_the_steps_for_a_large_face_grow_hardly_faster_than_its_corners(shape: tuple[int, float]) -> None:
+    """A search of all corners for every ear takes n^2; counted, not timed."""
+    kind, roughness = shape
+    polygon = [star_shaped(3, n, roughness) if kind == 1 else comb(n) for n in (1000, 16_000)]
+    few, many = (cut_ears(p)[1] for p in polygon)
+    assert many < 16**1.5 * few
+    assert many < 300 * 16_000
+
+
+def comb(corners: int) -> np.ndarray:
+    tooth = np.arange(corners // 2)
+    top = np.stack([tooth, np.where(tooth % 2, corners, 0)], axis=1)
+    return np.concatenate([top, np.stack([tooth[::-1], np.full(len(tooth), -1)], axis=1)])[::-1].astype(float)
+
+
+def test_a_comb_of_many_teeth() -> None:
+    assert_cut_well(comb(2000))
 
 
 def test_open_polyhedra_keep_their_boundary() -> None:
@@ -153,7 +241,7 @@ def test_colours_go_with_the_faces() -> None:
     mesh = Polyhedron.from_corners(cube.vertices, cube.offsets, cube.tail, face_colors=colors, colors=cube.vertices)
     result = triangulated(mesh)
     assert result.face_colors is not None
-    np.testing.assert_array_equal(result.face_colors, np.repeat(colors, mesh.face_sizes - 2, axis=0))
+    np.testing.assert_array_equal(result.face_colors, colors[cut_into_triangles(mesh).face])
     np.testing.assert_array_equal(result.colors, cube.vertices)
 
 

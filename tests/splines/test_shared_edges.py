@@ -26,8 +26,8 @@ def test_normals_are_tangent_at_both_ends_across_the_edge_and_as_long(name: str)
     along = geometry.log(domain.corners, heads)
     for end in (domain.corners, heads):
         np.testing.assert_allclose((form * end * normals).sum(axis=-1), 0, atol=1e-12)
-    np.testing.assert_allclose(geometry.inner(along, normals), 0, atol=1e-12)
-    np.testing.assert_allclose(geometry.norm(normals).ravel(), domain.edge_lengths, rtol=1e-12)
+    np.testing.assert_allclose(geometry.inner(domain.corners, along, normals), 0, atol=1e-12)
+    np.testing.assert_allclose(geometry.norm(domain.corners, normals).ravel(), domain.edge_lengths, rtol=1e-12)
 
 
 @pytest.mark.parametrize("name", spline_checks.MAKERS)

@@ -152,12 +152,12 @@ def test_normals_are_as_long_as_their_edges_and_cross_them(name: str) -> None:
     domain, geometry = checks.domain(name), checks.domain(name).geometry
     normal = edge_normals(domain)
     ends = domain.corners, np.roll(domain.corners, -1, axis=1)
-    np.testing.assert_allclose(geometry.norm(normal).ravel(), domain.edge_lengths, rtol=1e-11)
+    np.testing.assert_allclose(geometry.norm(domain.corners, normal).ravel(), domain.edge_lengths, rtol=1e-11)
     for t in (0.0, 0.3):
         x = geometry.geodesic(*ends, t)
         k = np.array([1, geometry.curvature, geometry.curvature])
         np.testing.assert_allclose((x * normal * k).sum(axis=-1), 0, atol=1e-11)
-        np.testing.assert_allclose(geometry.inner(geometry.log(x, ends[1]), normal), 0, atol=1e-10)
+        np.testing.assert_allclose(geometry.inner(x, geometry.log(x, ends[1]), normal), 0, atol=1e-10)
     flat = normal.reshape(-1, 3)
     other = geometry.act(domain.gluing, flat[domain.twin])
     np.testing.assert_allclose(other, -flat, atol=1e-10)

@@ -45,7 +45,7 @@ def test_the_derivative_across_a_mirror_is_zero(text):
     for side in polygon.word.mirrors:
         flag = polygon.side_flags[side]
         frame = group.geometry.frame(flag[:, 0])
-        across = [float(group.geometry.inner(frame[:, k], flag[:, 2])) for k in (0, 1)]
+        across = [float(group.geometry.inner(flag[:, 0], frame[:, k], flag[:, 2])) for k in (0, 1)]
         _, d1, d2 = jets(basis, flag[None, :, 0])[:, 0]
         np.testing.assert_allclose(across[0] * d1 + across[1] * d2, 0, atol=1e-11)
         assert np.hypot(d1, d2).max() > 1e-3, "the derivative along the mirror is not zero"

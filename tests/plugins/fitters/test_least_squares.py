@@ -6,15 +6,16 @@ import numpy as np
 import pytest
 import reference_surfaces as surfaces
 from orbiframe_bases.gaussian import Gaussian
-from orbiframe_fitters import least_squares
+from orbiframe_fitters import gram, least_squares, normal_equations
 from orbiframe_fitters.least_squares import LeastSquares
+from scipy.sparse import csr_array, diags_array, hstack
 
-from orbiframe import Basis, FitError, Points, Samples, UsageError
+from orbiframe import Basis, DifferentiableBasis, FitError, Points, Samples, UsageError
 
 
 def space(name: str, size: int = 40) -> Gaussian:
     triangulation = surfaces.triangulated(name)
-    return Gaussian(triangulation.orbifold, triangulation, size=size)
+    return Gaussian(triangulation.orbifold, triangulation, size=size, width=1.3)
 
 
 def samples(basis: Basis, count: int, dimension: int = 3) -> Samples:
@@ -63,7 +64,8 @@ def test_sparse_and_dense_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     basis = space("octagon")
     data = samples(basis, 600)
     dense = LeastSquares().fit(basis, data)
-    monkeypatch.setattr(least_squares, "_DENSE", 10)
+    monkeypatch.setattr(gram, "_DENSE", 10)
+    monkeypatch.setattr(normal_equations, "_FILLED", 2)
     monkeypatch.setattr(least_squares, "_CHUNK", 97)
     np.testing.assert_allclose(LeastSquares().fit(basis, data), dense, atol=1e-9)
 
@@ -106,6 +108,31 @@ def test_error_of_a_smooth_function_falls_with_the_number_of_functions() -> None
     assert errors[2] < errors[1] / 1.5
 
 
+class Scaled(DifferentiableBasis):
+    """The functions of another basis times numbers."""
+
+    def __init__(self, basis: DifferentiableBasis, scale: np.ndarray) -> None:
+        self.basis, self.scale = basis, scale
+        self.orbifold, self.size, self.smoothness = basis.orbifold, basis.size, basis.smoothness
+
+    def design_matrix(self, points: Points):
+        return self.jet_matrices(points, 0)[0]
+
+    def jet_matrices(self, points: Points, order: int):
+        return [csr_array(m @ diags_array(self.scale)) for m in self.basis.jet_matrices(points, order)]
+
+
+class Doubled(Scaled):
+    """The functions of another basis, each twice."""
+
+    def __init__(self, basis: DifferentiableBasis) -> None:
+        super().__init__(basis, np.ones(basis.size))
+        self.size = 2 * basis.size
+
+    def jet_matrices(self, points: Points, order: int):
+        return [hstack([m, m], format="csr") for m in self.basis.jet_matrices(points, order)]
+
+
 class Values(Basis):
     """The values of another basis, without its derivatives."""
 
@@ -125,13 +152,42 @@ def test_without_derivatives_fairing_is_refused_and_the_plain_fit_works() -> Non
     np.testing.assert_allclose(plain.fit(Values(basis), data), plain.fit(basis, data), atol=1e-9)
 
 
-def test_dependent_functions_without_a_ridge_are_an_error_with_the_way_out() -> None:
+def test_too_few_samples_are_an_error_with_the_way_out() -> None:
     basis = space("torus")
-    with pytest.raises(FitError, match="ridge"):
-        LeastSquares(fairing=0, ridge=0).fit(basis, samples(basis, 10))
+    with pytest.raises(FitError, match="10 samples do not determine 40 functions without fairing; raise the option"):
+        LeastSquares(fairing=0).fit(basis, samples(basis, 10))
 
 
-@pytest.mark.parametrize("options", [{"fairing": -1.0}, {"ridge": float("nan")}])
+def test_functions_that_reach_no_sample_are_an_error() -> None:
+    """Enough samples, but all in one place."""
+    basis = space("torus", 100)
+    data = samples(basis, 1)
+    crowded = data.take(np.zeros(500, dtype=int))
+    with pytest.raises(FitError, match=r"of 100 functions reach no sample \(the first is function \d+\)"):
+        LeastSquares(fairing=0).fit(basis, crowded)
+
+
+def test_functions_of_very_different_size_count_alike() -> None:
+    """A function times 1e-9 has a coefficient times 1e9: the surface stays the same."""
+    basis = space("octagon")
+    data = samples(basis, 600)
+    scale = np.ones(basis.size)
+    scale[::3] = 1e-9
+    expected = LeastSquares().fit(basis, data)
+    np.testing.assert_allclose(scale[:, None] * LeastSquares().fit(Scaled(basis, scale), data), expected, atol=1e-8)
+
+
+def test_dependent_functions_do_no_harm() -> None:
+    """Every function twice: the same surface, and neither copy grows. Half the area per function, fairing times 4."""
+    basis = space("octagon")
+    data = samples(basis, 600)
+    expected = LeastSquares().fit(basis, data)
+    twice = LeastSquares(fairing=0.012).fit(Doubled(basis), data)
+    np.testing.assert_allclose(twice[:40] + twice[40:], expected, atol=1e-7)
+    assert np.abs(twice).max() < 2 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("options", [{"fairing": -1.0}, {"fairing": float("nan")}])
 def test_options_out_of_range(options: dict[str, float]) -> None:
     with pytest.raises(UsageError, match=next(iter(options))):
         LeastSquares(**options)

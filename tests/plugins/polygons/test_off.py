@@ -72,7 +72,7 @@ def test_colours_of_some_faces_only_are_left_out_with_a_warning(tmp_path):
         ("hello\n", "line 1"),
         (PLAIN.replace("OFF", "4OFF"), "line 1.*another dimension"),
         (PLAIN.replace("OFF", "nOFF"), "line 1.*another dimension"),
-        (PLAIN.replace("OFF\n", "OFF BINARY\n"), "line 1.*binary"),
+        (PLAIN.replace("OFF\n", "OFF BINARY\n"), "byte 11.*binary"),
         (PLAIN.replace("4 4 6", "-4 4 6"), "line 2"),
         (PLAIN.replace("4 4 6", "4 4 6 8"), "line 2"),
         (PLAIN.replace("4 4 6", "4000000000 4 6"), "line 2.*cut short"),

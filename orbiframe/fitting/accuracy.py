@@ -1,0 +1,129 @@
+"""Accuracy: how far a surface and the mesh are from each other, both ways, in diagonals of the mesh."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe.errors import FitError
+from orbiframe.functions.basis import DifferentiableBasis
+from orbiframe.functions.feet import foot_points, foot_step
+from orbiframe.functions.samples import Samples, places
+from orbiframe.meshes.nearest_points import NearestPoints
+from orbiframe.meshes.sizes import vector_areas
+from orbiframe.surfaces.surface import OrbifoldSurface
+
+Floats = NDArray[np.float64]
+
+# A surface that leaves the ball about the mesh by more than its radius is no approximation.
+_TOO_FAR = 1.0
+# Feet farther than this share of the spacing of functions, and this share of all that are worst, are found exactly.
+_NEAR, _WORST = 0.1, 0.01
+
+
+class Distances(NamedTuple):
+    """Root mean square, mean and largest of distances, and the point in space where they are largest."""
+
+    rms: float
+    mean: float
+    max: float
+    place: tuple[float, float, float]
+
+
+class Accuracy(NamedTuple):
+    """Distances of the mesh to the surface, of the surface to the mesh, and of the given vertices to the surface.
+
+    normals: the root mean square of the angle between normals of facets and of the surface at the feet, in degrees;
+    at_vertices: (V,), the distances of the vertices of the refined mesh to the surface: where functions are missing.
+    """
+
+    to_surface: Distances
+    to_mesh: Distances
+    vertices: Distances
+    normals: float
+    at_vertices: Floats
+
+    def against(self, smooth: bool) -> tuple[float, float]:
+        """Root mean square and maximum of the distance to what the mesh means: its vertices, or both ways."""
+        parts = (self.vertices,) if smooth else (self.to_surface, self.to_mesh)
+        return max(part.rms for part in parts), max(part.max for part in parts)
+
+
+def accuracy_of(surface: OrbifoldSurface) -> Accuracy:
+    """The accuracy of a surface for a mesh of unit size.
+
+    Samples of the mesh go to their foot points on the surface, and the points of the surface over them to the nearest
+    point of the mesh; a surface without derivatives is measured at the parameters of the samples. Raises FitError for a
+    surface that is worse than its own centroid.
+    """
+    flat, given = surface.refinement.polyhedron, len(surface.refinement.coarse.vertices)
+    samples = places(replace(surface.triangulation, polyhedron=flat))
+    there, away, normals = _seen(surface, samples)
+    _require_sane(there, samples.values, samples.weights)
+    back = NearestPoints(flat).distance(there)
+    return Accuracy(
+        _distances(away, samples.weights, samples.values),
+        _distances(back, samples.weights, there),
+        _distances(away[:given], samples.weights[:given], samples.values[:given]),
+        _tilt(normals[len(flat.vertices) :], vector_areas(flat)),
+        away[: len(flat.vertices)],
+    )
+
+
+def _seen(surface: OrbifoldSurface, samples: Samples) -> tuple[Floats, Floats, Floats]:
+    """The points of a surface over samples, the distances of the samples to it, and the normals at their feet.
+
+    Feet near by are found on the parabolic surface that touches at the sample, those that matter most by Newton's
+    method.
+    """
+    basis, coefficients, targets = surface.basis, surface.coefficients, samples.values
+    if not isinstance(basis, DifferentiableBasis):
+        there = surface.evaluate(samples.points)
+        return there, np.asarray(np.linalg.norm(there - targets, axis=1)), np.full(there.shape, np.nan)
+    jets = basis.jets(samples.points, coefficients, 2)
+    spacing = float(np.sqrt(samples.weights.sum() / basis.size))
+    u, v = foot_step(jets, targets, spacing).T[..., None]
+    slopes = jets[1] + u * jets[3] + v * jets[4], jets[2] + u * jets[4] + v * jets[5]
+    way = u * (jets[1] + slopes[0]) / 2 + v * (jets[2] + slopes[1]) / 2
+    away = np.linalg.norm(targets - jets[0] - way, axis=1)
+    far = (np.linalg.norm(way, axis=1) > _NEAR * spacing) | (away >= np.quantile(away, 1 - _WORST))
+    chosen = np.append(np.arange(len(surface.refinement.coarse.vertices)), np.flatnonzero(far))
+    start = samples.take(chosen)
+    away[chosen] = foot_points(basis, coefficients, start.points, start.values, spacing)[1]
+    return jets[0], away, np.cross(*slopes)
+
+
+def _tilt(normals: Floats, vectors: Floats) -> float:
+    """The angle between facets and the normals of the surface, up to their signs, in degrees."""
+    area, size = np.linalg.norm(vectors, axis=1), np.linalg.norm(normals, axis=1)
+    cosine = np.abs(np.einsum("fi,fi->f", normals, vectors)) / np.maximum(area * size, np.finfo(float).tiny)
+    return float(np.degrees(np.sqrt(area @ np.arccos(np.minimum(cosine, 1.0)) ** 2 / area.sum())))
+
+
+def _require_sane(there: Floats, values: Floats, weights: Floats) -> None:
+    """Raises FitError for a surface that is no better than the centroid of the mesh, or far outside of the mesh."""
+    share = weights / weights.sum()
+    centroid = share @ values
+    constant = float(np.sqrt(share @ ((values - centroid) ** 2).sum(axis=1)))
+    rms = float(np.sqrt(share @ ((values - there) ** 2).sum(axis=1)))
+    if not rms < constant:
+        raise FitError(
+            f"the surface is off by {rms:.2g} of the diagonal, and a single point by {constant:.2g}: so few functions "
+            "do not follow this mesh; raise the option size, or choose another basis (basis.name = 'gaussian')"
+        )
+    radius = float(np.linalg.norm(values - centroid, axis=1).max())
+    reached = float(np.linalg.norm(there - centroid, axis=1).max())
+    if reached > (1 + _TOO_FAR) * radius:
+        raise FitError(
+            f"the surface reaches {reached / radius:.2g} times as far from its middle as the mesh: so few functions do "
+            "not follow this mesh; raise the option size or the option fairing, or choose another basis"
+        )
+
+
+def _distances(away: Floats, weights: Floats, where: Floats) -> Distances:
+    share, worst = weights / weights.sum(), int(np.argmax(away))
+    x, y, z = (float(number) for number in where[worst])
+    return Distances(float(np.sqrt(share @ away**2)), float(share @ away), float(away[worst]), (x, y, z))

@@ -1,0 +1,176 @@
+"""Approximation: surfaces for one mesh, with as many functions as are asked for or as an accuracy needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe.components.options import options_of
+from orbiframe.errors import FitError
+from orbiframe.fitting.accuracy import Accuracy, accuracy_of
+from orbiframe.fitting.config import Config
+from orbiframe.fitting.mapping import Mapped, Mapping
+from orbiframe.fitting.meaning import Meaning, meaning_of
+from orbiframe.fitting.size import LEAST_SIZE, default_size, size_needed
+from orbiframe.fitting.stages import Stages
+from orbiframe.functions.basis import Basis
+from orbiframe.functions.fitter import Fitter
+from orbiframe.functions.samples import Samples
+from orbiframe.meshes.bisection import Bisection
+from orbiframe.orbifolds.atlas import Points
+from orbiframe.surfaces.surface import OrbifoldSurface
+from orbiframe.triangulations.local_girth import averaged, girth
+
+Floats = NDArray[np.float64]
+
+_FIRST_SIZE, _LARGEST_SIZE = 500, 16_000
+_GROWTH = (1.3, 2.0)
+_FIRST_FITTER = "least-squares"
+# How the density of functions follows the error: its root, between these shares of the mean, averaged so often.
+_LEAST_ERROR, _MOST_ERROR, _ROUNDS = 0.2, 8.0, 8
+
+
+class Approximation(NamedTuple):
+    """A surface for a mesh of unit size, its map, what it was fitted to, how well, and what a user should know."""
+
+    surface: OrbifoldSurface
+    mapped: Mapped
+    samples: Samples
+    meaning: Meaning
+    accuracy: Accuracy
+    energy: float
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Approximations:
+    """Approximations of the mesh of a mapping."""
+
+    mapping: Mapping
+    config: Config
+    stages: Stages
+
+    def wanted(self) -> Approximation:
+        """The surface of the size that is asked for, or that the shape needs, or that an accuracy needs."""
+        output = self.config.output
+        if output.tolerance is not None or output.max_error is not None:
+            return self._accurate(output.tolerance or np.inf, output.max_error or np.inf)
+        return self.of_size(self._given_size or self._default_size())
+
+    def of_size(self, size: int, density: Density | None = None) -> Approximation:
+        """The surface of so many functions; of more if they cannot follow the map and no number is asked for."""
+        mapped = self.mapping.for_size(size)
+        mapped = mapped if density is None else mapped.with_density(density.on(mapped.refinement))
+        energy = girth(mapped.triangulation).energy
+        basis = self._basis(mapped, size)
+        needed = size_needed(basis, energy)
+        if needed > basis.size and self._given_size is None:
+            return self.of_size(max(needed, basis.size + 100), density)
+        meaning = meaning_of(self.mapping.facets, self.config.data.means, size)
+        notes = () if needed <= basis.size else (too_few(basis.size, needed),)
+        try:
+            if meaning.smooth and self.config.data.lift:
+                mapped = self._lifted(mapped, basis, meaning)
+                basis = self._basis(mapped, size)
+            fitter = self.config.component("fitter", self.stages.registry)()
+            samples, surface = self._surface(mapped, basis, meaning, fitter)
+            accuracy = self.stages("error", accuracy_of, surface)
+        except FitError as error:
+            raise FitError("; ".join((str(error), *notes))) from error
+        return Approximation(surface, mapped, samples, meaning, accuracy, energy, notes)
+
+    def _accurate(self, rms: float, largest: float) -> Approximation:
+        """More functions, and more of them where the error is, until the surface is near enough."""
+        size, density = _FIRST_SIZE, None
+        while True:
+            found = self.of_size(size, density)
+            reached = found.accuracy.against(found.meaning.smooth)
+            excess = max(reached[0] / rms, reached[1] / largest)
+            if excess <= 1:
+                return found
+            if size >= _LARGEST_SIZE:
+                raise FitError(
+                    f"{found.surface.basis.size} functions reach an error of {reached[0]:.2e} (rms) and "
+                    f"{reached[1]:.2e} (largest), not {rms:.2e} and {largest:.2e}; sharp edges converge slowly: allow "
+                    "a larger error, or set basis.size yourself"
+                )
+            density = Density.of_error(found)
+            size = min(round(size * np.clip(excess ** (2 / 3), *_GROWTH)), _LARGEST_SIZE)
+
+    @property
+    def _given_size(self) -> int | None:
+        return self.config.basis.options.get("size")
+
+    def _default_size(self) -> int:
+        """The number of functions for this shape, as far as a first map tells."""
+        energy = girth(self.mapping.for_size(LEAST_SIZE).triangulation).energy
+        chi = self.mapping.surface_type.euler_characteristic
+        return default_size(energy, len(self.mapping.triangles.vertices), chi)
+
+    def _basis(self, mapped: Mapped, size: int) -> Basis:
+        made = self._sized(size).component("basis", self.stages.registry)
+        basis: Basis = self.stages("basis", made, mapped.triangulation.orbifold, mapped.triangulation)
+        return basis
+
+    def _sized(self, size: int) -> Config:
+        """The configuration with this size, where the basis has an option of that name."""
+        options = options_of(self.stages.registry.load("basis", self.config.basis.name))
+        known = any(option.name == "size" for option in options)
+        return self.config.with_options("basis", size=size) if known else self.config
+
+    def _lifted(self, mapped: Mapped, basis: Basis, meaning: Meaning) -> Mapped:
+        """The map of the mesh with all its vertices on a first surface, so that it has no facets to show."""
+        first = self.stages.registry.load("fitter", _FIRST_FITTER)()
+        surface = self._surface(mapped, basis, meaning, first)[1]
+        flat = mapped.triangulation
+        lifted = flat.polyhedron.with_vertices(surface.evaluate(Points(flat.patch, flat.points)))
+        return self.mapping.of_lifted(mapped, lifted)
+
+    def _surface(
+        self, mapped: Mapped, basis: Basis, meaning: Meaning, fitter: Fitter
+    ) -> tuple[Samples, OrbifoldSurface]:
+        triangulation, refinement = mapped.triangulation, mapped.refinement
+        samples = self.stages("samples", meaning.samples, triangulation, refinement, basis.size)
+        coefficients = self.stages("fit", fitter.fit, basis, samples)
+        recipe = self.config.basis.name, self._options(basis.size)
+        return samples, OrbifoldSurface(triangulation, refinement, basis, coefficients, np.zeros(3), 1.0, *recipe)
+
+    def _options(self, size: int) -> dict[str, Any]:
+        """All options of the basis, those given and the defaults of the others."""
+        given = self._sized(size).basis.options
+        options = options_of(self.stages.registry.load("basis", self.config.basis.name))
+        return {option.name: given.get(option.name, option.default) for option in options}
+
+
+class Density(NamedTuple):
+    """How many functions there should be per length, at the vertices of a refinement, (V,), up to a factor."""
+
+    refinement: Bisection
+    values: Floats
+
+    @classmethod
+    def of_error(cls, found: Approximation) -> Density:
+        """More where the error is: its root against the mean, times the density before."""
+        triangulation = found.mapped.triangulation
+        error = averaged(triangulation, found.accuracy.at_vertices, _ROUNDS)
+        relative = error / max(float(np.sqrt(np.mean(error**2))), np.finfo(float).tiny)
+        factor = np.sqrt(np.clip(relative, _LEAST_ERROR, _MOST_ERROR))
+        before = 1.0 if triangulation.density is None else triangulation.density
+        return cls(found.mapped.refinement, factor * before)
+
+    def on(self, refinement: Bisection) -> Floats:
+        """The density at the vertices of another refinement of the same mesh, (V,)."""
+        if refinement is self.refinement:
+            return self.values
+        face, barycentric = refinement.origins()
+        fine, weights = self.refinement.locate_in_facets(face, barycentric)
+        corners = self.values[self.refinement.polyhedron.triangles[fine]]
+        return np.asarray(np.einsum("nc,nc->n", weights, corners))
+
+
+def too_few(size: int, needed: int) -> str:
+    """What a user should know of a size below the one that the shape needs."""
+    return f"{size} functions are too few for the thin parts of this mesh: take about {needed} (option size)"

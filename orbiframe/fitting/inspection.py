@@ -1,0 +1,54 @@
+"""Inspection: what is wrong with a surface, if anything: folds, self-intersections, lost volume."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.self_intersections import self_intersecting
+from orbiframe.surfaces.folds import folded_share
+from orbiframe.surfaces.surface import OrbifoldSurface
+
+_FOLD = 1e-6
+
+
+class Inspection(NamedTuple):
+    """The share of the area that is folded over; triangles that pass through others, (n,), in the mesh and in the
+    output; the volumes within both, relative to that of the mesh, None where there is none.
+    """
+
+    folded: float
+    in_mesh: NDArray[np.intp]
+    in_output: NDArray[np.intp]
+    volume: float | None
+
+    def notes(self, output: Polyhedron) -> Iterator[str]:
+        """Sentences for what a user should look at."""
+        if self.folded > _FOLD:
+            yield f"the surface folds over on {self.folded:.1e} of its area; more functions help (option size)"
+        if len(self.in_output) and not len(self.in_mesh):
+            place = output.vertices[output.triangles[self.in_output[0]]].mean(axis=0)
+            where = ", ".join(f"{x:.6g}" for x in place)
+            yield (
+                f"{len(self.in_output)} of {output.face_count} output triangles pass through others, one near "
+                f"({where}); more functions help where parts are thin (option size)"
+            )
+
+
+def inspected(surface: OrbifoldSurface, output: Polyhedron, bisected: bool) -> Inspection:
+    """The inspection of a surface by a mesh on it; bisected: the mesh cuts every triangle of the refined one alike."""
+    fine = output if bisected else surface.tessellate(bisected=True)
+    mesh = surface.refinement.coarse
+    inside, outside = _volume(mesh) * surface.scale**3, _volume(output)
+    ratio = None if output.same.any() or not abs(inside) > 0 else outside / inside
+    return Inspection(folded_share(surface, fine), self_intersecting(mesh), self_intersecting(output), ratio)
+
+
+def _volume(mesh: Polyhedron) -> float:
+    """The volume within a triangle mesh, about the middle of its vertices."""
+    corners = mesh.vertices[mesh.triangles] - mesh.vertices.mean(axis=0)
+    return float(np.linalg.det(corners).sum() / 6)

@@ -1,0 +1,128 @@
+"""Mapping: the mesh refined for as many functions as are wanted, and its map to X/H."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe.errors import MapError
+from orbiframe.fitting.config import Config
+from orbiframe.fitting.stages import Stages
+from orbiframe.groups.marked_group import MarkedGroup
+from orbiframe.meshes.bisection import Bisection, bisected, edge_length_for
+from orbiframe.meshes.flat_flips import FlatFlips, flat_flips
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.regular_triangles import regular_triangles
+from orbiframe.meshes.surface_type import SurfaceType
+from orbiframe.planes.geometry import Geometry
+from orbiframe.plugin import DEFAULT_MARKER
+from orbiframe.triangulations.face_shapes import FaceShapes, face_shapes
+from orbiframe.triangulations.triangulation import Triangulation
+
+PARAMETRIZER = {"s2": "sphere", "e2": "harmonic", "h2": "harmonic"}
+NAMED_PARAMETRIZER = {"s2": "sphere", "e2": "equivariant", "h2": "equivariant"}
+
+_VERTICES_PER_FUNCTION = 6
+_LEAST_VERTICES = 3000
+
+
+class Mapped(NamedTuple):
+    """A refined mesh and its map to X/H, as the parametrizer made it and as the optimizer left it."""
+
+    refinement: Bisection
+    first: Triangulation
+    triangulation: Triangulation
+
+    def with_density(self, density: NDArray[np.float64]) -> Mapped:
+        """The same map, with so many functions per length wanted at its vertices."""
+        return self._replace(triangulation=replace(self.triangulation, density=density))
+
+    def face_shapes(self, polyhedron: Polyhedron) -> tuple[FaceShapes, FaceShapes | None]:
+        """The faces of the polyhedron in X/H, and as they were before an optimizer changed them, if one did."""
+        now = face_shapes(polyhedron, self.refinement, self.triangulation)
+        same = self.first.points is self.triangulation.points
+        return now, None if same else face_shapes(polyhedron, self.refinement, self.first)
+
+
+@dataclass(frozen=True, eq=False)
+class Mapping:
+    """The maps of one polyhedron of unit size.
+
+    triangles: its faces cut into triangles; maps: the refinement and the map for every longest edge that has been
+    needed so far.
+    """
+
+    polyhedron: Polyhedron
+    triangles: Polyhedron
+    surface_type: SurfaceType
+    config: Config
+    stages: Stages
+    maps: dict[float, Mapped] = field(default_factory=dict)
+
+    @cached_property
+    def flips(self) -> FlatFlips | None:
+        """Needles in plane parts of the polyhedron, gone; an optimizer of its faces needs their own triangles."""
+        return flat_flips(self.triangles) if self.config.shape.open else None
+
+    @property
+    def facets(self) -> Polyhedron:
+        """The triangles after the flips."""
+        return self.triangles if self.flips is None else self.flips.after
+
+    def for_size(self, size: int) -> Mapped:
+        """The mesh refined so that samples and centres are dense enough for so many functions, and its map to X/H."""
+        longest = edge_length_for(self.facets, max(_LEAST_VERTICES, _VERTICES_PER_FUNCTION * size))
+        if longest not in self.maps:
+            refinement = self.stages("refinement", bisected, self.triangles, longest, True, self.flips)
+            self.maps[longest] = self._mapped(refinement, refinement.polyhedron)
+        return self.maps[longest]
+
+    def of_lifted(self, mapped: Mapped, lifted: Polyhedron) -> Mapped:
+        """The map of the refined mesh with its vertices moved; the one before, if those cannot be mapped."""
+        try:
+            again = self._mapped(mapped.refinement, lifted)
+        except MapError:
+            return mapped
+        density = mapped.triangulation.density
+        return again if density is None else again.with_density(density)
+
+    def _mapped(self, refinement: Bisection, mesh: Polyhedron) -> Mapped:
+        """The map of a mesh that is connected like the refinement, verified."""
+        geometry: Geometry = self.stages.registry.geometry(self.surface_type.euler_characteristic)
+        group = None if self.config.group.open else self._named_group(mesh, geometry)
+        name = (PARAMETRIZER if group is None else NAMED_PARAMETRIZER)[geometry.name]
+        name = name if self.config.map.open else self.config.map.name
+        parametrizer = self.config.component("map", self.stages.registry, name)
+        triangulation: Triangulation = self.stages("map", parametrizer, mesh, geometry, group)
+        remedy = "map.method = 'auto'" + ("" if group is None else " or group.method = 'mesh'")
+        _require_embedding(triangulation, f"the map of '{name}'", remedy)
+        return Mapped(refinement, triangulation, self._shaped(refinement, triangulation))
+
+    def _shaped(self, refinement: Bisection, first: Triangulation) -> Triangulation:
+        """The map changed so that the faces of the polyhedron become regular, where an optimizer is named."""
+        step = self.config.shape
+        if step.open:
+            return first
+        target = refinement.spread(regular_triangles(self.polyhedron))
+        optimizer = self.config.component("shape", self.stages.registry)
+        shaped: Triangulation = self.stages("shape", optimizer, first, target)
+        _require_embedding(shaped, f"the shapes of '{step.name}'", "shape.method = 'none'")
+        return shaped
+
+    def _named_group(self, mesh: Polyhedron, geometry: Geometry) -> MarkedGroup:
+        """The mesh cut open to a disc, and the group that the configuration names with the word of its boundary."""
+        config, registry = self.config, self.stages.registry
+        name = DEFAULT_MARKER if config.marking.open else config.marking.name
+        marking = self.stages("marking", config.component("marking", registry, name), mesh)
+        group = self.stages("group", config.component("group", registry), geometry, marking.word)
+        return MarkedGroup(group, marking, config.group.name)
+
+
+def _require_embedding(triangulation: Triangulation, made: str, remedy: str) -> None:
+    if triangulation.not_positive:
+        count = triangulation.polyhedron.face_count
+        raise MapError(f"{triangulation.not_positive} of {count} triangles are folded in {made}; use {remedy}")

@@ -1,0 +1,99 @@
+"""Samples of what a mesh stands for: a smooth surface through its vertices, all over or where its facets are curved."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe.functions.samples import Samples, places
+from orbiframe.meshes.bending import SHARP, bending
+from orbiframe.meshes.bisection import Bisection
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.sizes import vector_areas
+from orbiframe.triangulations.local_girth import girth
+from orbiframe.triangulations.triangulation import Triangulation
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+# Fairness acts on lengths up to that of a facet, and of half a girth.
+_OF_GIRTH = 0.5
+# A facet whose arc is higher than this share of the distance of functions stands for something curved.
+_SAGITTA = 0.002
+_FLAT = np.radians(3)
+
+
+def vertex_samples(triangulation: Triangulation, refinement: Bisection) -> Samples:
+    """The vertices of the coarse mesh alone, as points of a smooth surface; between them fairness of order three.
+
+    A vertex counts like a third of the area of its triangles. The length of fairness is that of the facets about.
+    """
+    mesh, coarse = triangulation.polyhedron, refinement.facets
+    area, count = np.linalg.norm(vector_areas(coarse), axis=1), len(coarse.vertices)
+    everywhere = places(triangulation).take(np.arange(len(mesh.vertices)))
+    weights, values = np.zeros(len(mesh.vertices)), mesh.vertices.copy()
+    weights[:count], values[:count] = _around(coarse, area / 3), coarse.vertices
+    share = _around(mesh, np.linalg.norm(vector_areas(mesh), axis=1) / 3)
+    length = _lengths(triangulation, refinement, _evened(coarse, area))[: len(mesh.vertices)]
+    return _fair(Samples(everywhere.points, values, weights, everywhere.stretch, share, length, 3))
+
+
+def semi_smooth_samples(triangulation: Triangulation, refinement: Bisection, spacing: float) -> Samples:
+    """Vertices where facets are curved, the facets themselves where they are flat; fairness of order three.
+
+    A facet is curved if an edge bends it between 3 and 40 degrees; its sagitta is the largest height of the arcs over
+    it that have these bends at their ends. Its samples count the less the larger that is against the spacing of the
+    functions. Fairness acts on the length of curved facets, and on the spacing elsewhere.
+    """
+    coarse, flat = refinement.facets, refinement.polyhedron
+    area = np.linalg.norm(vector_areas(coarse), axis=1)
+    sagitta = _sagittas(coarse, area)
+    everywhere = places(triangulation)
+    share = 1 / (1 + (_at_samples(triangulation, refinement, sagitta) / (_SAGITTA * spacing)) ** 2)
+    weights, count = everywhere.weights * share, len(coarse.vertices)
+    weights[:count] = np.maximum(weights[:count], _around(coarse, np.where(sagitta > 0, area / 3, 0)))
+    long = np.maximum(_lengths(triangulation, refinement, area), spacing)
+    length = np.where(_at_samples(triangulation, refinement, (sagitta > 0).astype(float)) > 0.5, long, spacing)
+    values = np.concatenate([flat.vertices, flat.vertices[flat.triangles].mean(axis=1)])
+    return _fair(Samples(everywhere.points, values, weights, everywhere.stretch, everywhere.weights, length, 3))
+
+
+def _fair(samples: Samples) -> Samples:
+    """Those of the samples that count for anything."""
+    return samples.take(np.flatnonzero((samples.weights > 0) | (samples.shares > 0)))
+
+
+def _sagittas(mesh: Polyhedron, area: Floats) -> Floats:
+    """For each triangle the largest of angle times height / 8 over its edges that are bent but not sharp."""
+    angle = bending(mesh).angle
+    curved = np.where((angle > _FLAT) & (angle < SHARP), angle, 0.0)
+    height = 2 * area[mesh.face] / np.maximum(mesh.edge_lengths, np.finfo(float).tiny)
+    return np.asarray((curved * height / 8).reshape(-1, 3).max(axis=1))
+
+
+def _evened(mesh: Polyhedron, area: Floats) -> Floats:
+    """Areas of triangles like those of the triangles about them: means of means at their corners."""
+    degree = np.maximum(np.bincount(mesh.tail, minlength=len(mesh.vertices)), 1)
+    return np.asarray((_around(mesh, area) / degree)[mesh.triangles].mean(axis=1))
+
+
+def _lengths(triangulation: Triangulation, refinement: Bisection, area: Floats) -> Floats:
+    """The length of fairness at all places: the root of twice the area of the facet, or half the girth if less."""
+    slope = girth(triangulation).slope
+    slopes = np.concatenate([slope, slope[triangulation.polyhedron.triangles].mean(axis=1)])
+    facet = _at_samples(triangulation, refinement, np.sqrt(2 * area))
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.minimum(facet, _OF_GIRTH / slopes))
+
+
+def _at_samples(triangulation: Triangulation, refinement: Bisection, of_facet: Floats) -> Floats:
+    """A quantity of the facets at all places: at a vertex the mean over its fine triangles."""
+    mesh = triangulation.polyhedron
+    fine = refinement.spread(np.repeat(of_facet, 3).reshape(-1, 3, 1))[:, 0, 0]
+    degree = np.maximum(np.bincount(mesh.tail, minlength=len(mesh.vertices)), 1)
+    return np.concatenate([_around(mesh, fine) / degree, fine])
+
+
+def _around(mesh: Polyhedron, of_face: Floats) -> Floats:
+    """The sum of a quantity of triangles over those about each vertex."""
+    return np.asarray(np.bincount(mesh.tail, weights=np.repeat(of_face, 3), minlength=len(mesh.vertices)), dtype=float)

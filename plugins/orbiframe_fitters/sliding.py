@@ -1,0 +1,258 @@
+"""Sliding fit: the data slide along the surface to their foot points, and only distances along normals count."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+import scipy.sparse
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from orbiframe import Basis, DifferentiableBasis, Fitter, Points, Samples
+from orbiframe.functions import foot_step, moved
+from orbiframe_fitters.energy import Energy, energy_of, spacing
+from orbiframe_fitters.gram import Gram
+from orbiframe_fitters.least_squares import LeastSquares, chunks, require_not_negative
+from orbiframe_fitters.normal_equations import solved
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+_PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
+_KIND = np.array([[0, 1, 2], [1, 3, 4], [2, 4, 5]])
+# A foot moves at most so many lengths of fairness in one step, and the surface is stretched at most so much in fairing.
+_LONGEST_STEP = 0.3
+_MOST_STRETCH = 30.0
+# A step that leaves more than this share of the distance is the last one.
+_GAIN = 0.97
+
+
+class Schedule(NamedTuple):
+    """How steps weigh against each other: fairing, damping of tangential motion, and least pull along the surface."""
+
+    fairing: float
+    damping: float
+    pull: float
+
+
+# By the order of the energy; each entry holds until the next, the last one for all further steps.
+_SCHEDULES = {
+    2: (Schedule(1e-4, 1e-2, 1e-3), Schedule(1e-4, 5e-3, 1e-3)),
+    3: (Schedule(1e-4, 1e-3, 0.0), Schedule(1e-6, 1e-4, 0.0)),
+}
+
+
+class Sliding(Fitter):
+    """Squared distance minimisation (Pottmann, Leopoldseder and Hofer, 2002), from the linear least squares fit on.
+
+    A datum v of weight w is near the surface if its foot point f is near, whatever its parameters are. Every step finds
+    the feet by Newton's method in X and minimises the sum of w ((1 - t) (n . (S(f) - v))^2 + t |S(f) - v|^2) and the
+    fairing, with the normal n at f and t = d / (d + rho) for the distance d and the smaller radius of curvature rho:
+    Gauss and Newton's method, exact to second order. Fairness is measured in the metric of the surface as it is. Only
+    three coordinates make a surface: other values, and functions without derivatives, are fitted by least squares.
+
+    fairing: how strongly ripples are damped, as in `least-squares`; by default that of each step, less than there,
+    because far fewer conditions are set; steps: at most so many; it stops by itself when the distance falls no more.
+
+    Raises UsageError for an option out of range, and what `least-squares` raises.
+    """
+
+    def __init__(self, *, fairing: float | None = None, steps: int = 5) -> None:
+        require_not_negative("sliding", fairing=fairing, steps=steps)
+        self.fairing = fairing
+        self.steps = steps
+
+    def fit(self, basis: Basis, samples: Samples) -> Floats:
+        """The coefficients (size, d); see the class."""
+        first = LeastSquares(fairing=self.fairing).fit(basis, samples)
+        if samples.values.shape[1] != 3 or not isinstance(basis, DifferentiableBasis):
+            return first
+        slide = _Slide(basis, samples, self._schedules(basis, samples))
+        return slide.from_start(first, self.steps)
+
+    def _schedules(self, basis: Basis, samples: Samples) -> tuple[Schedule, ...]:
+        schedules = _SCHEDULES[min(samples.order, 2 if basis.smoothness < 2 else 3)]
+        if self.fairing is None:
+            return schedules
+        return tuple(schedule._replace(fairing=self.fairing) for schedule in schedules)
+
+
+@dataclass(frozen=True, eq=False)
+class _Feet:
+    """Data and their feet on the surface: the points, the matrices of their jets, and the jets, (6, n, 3)."""
+
+    points: Points
+    matrices: list[csr_array]
+    jets: Floats
+    gap: Floats
+
+    @property
+    def distance(self) -> Floats:
+        return np.asarray(np.linalg.norm(self.gap, axis=1))
+
+    def under(self, coefficients: Floats, targets: Floats) -> _Feet:
+        """The same points on another surface."""
+        jets = np.stack([matrix @ coefficients for matrix in self.matrices])
+        return _Feet(self.points, self.matrices, jets, targets - jets[0])
+
+    def replaced(self, rows: Ints, other: _Feet) -> _Feet:
+        """With the rows of another one, (k,) of them, in place of its own."""
+        patch, x, jets, gap = self.points.patch.copy(), self.points.x.copy(), self.jets.copy(), self.gap.copy()
+        patch[rows], x[rows], jets[:, rows], gap[rows] = other.points.patch, other.points.x, other.jets, other.gap
+        order = np.arange(len(gap))
+        order[rows] = len(gap) + np.arange(len(rows))
+        pairs = zip(self.matrices, other.matrices, strict=True)
+        return _Feet(Points(patch, x), [_stacked(a, b)[order] for a, b in pairs], jets, gap)
+
+    def take(self, rows: Ints) -> _Feet:
+        points = Points(self.points.patch[rows], self.points.x[rows])
+        return _Feet(points, [matrix[rows] for matrix in self.matrices], self.jets[:, rows], self.gap[rows])
+
+
+class _Fairness(NamedTuple):
+    """Samples where fairness is asked for: which of all, the rows of the energy, and those of the two slopes."""
+
+    chosen: Ints
+    rows: list[csr_array]
+    slopes: list[csr_array]
+
+
+class _Slide:
+    """The data of a sliding fit, chunk by chunk, and its steps."""
+
+    def __init__(self, basis: DifferentiableBasis, samples: Samples, schedules: tuple[Schedule, ...]) -> None:
+        self.basis, self.samples, self.schedules = basis, samples, schedules
+        self.energy = energy_of(basis, samples, 1.0)
+        self.data = [
+            part.take(np.flatnonzero(part.weights > 0)) for part, _ in chunks(samples) if (part.weights > 0).any()
+        ]
+        self.fairness = self._fairness(self.energy) if self.energy else []
+        length = np.full(len(samples.weights), spacing(basis, samples)) if samples.length is None else samples.length
+        self.longest = [
+            _LONGEST_STEP * length[chosen[part.weights > 0]]
+            for part, chosen in chunks(samples)
+            if (part.weights > 0).any()
+        ]
+
+    def _fairness(self, energy: Energy) -> list[_Fairness]:
+        found = []
+        for part, chosen in chunks(self.samples):
+            jets = self.basis.jet_matrices(part.points, energy.order)
+            found.append(_Fairness(chosen, energy.rows(jets), jets[1:3]))
+        return found
+
+    def from_start(self, coefficients: Floats, steps: int) -> Floats:
+        """The coefficients after at most so many steps; a step that leads away is halved, then refused."""
+        feet = self._slid([self._feet(part.points, part.values, coefficients) for part in self.data], coefficients)
+        distance = self._distance(feet)
+        for step in range(steps):
+            change = self._change(feet, coefficients, self.schedules[min(step, len(self.schedules) - 1)])
+            before = distance
+            for share in (1.0, 0.5, 0.25):
+                trial = coefficients + share * change
+                there = self._slid(self._under(feet, trial), trial)
+                distance = self._distance(there)
+                if distance < before:
+                    break
+            else:
+                return coefficients
+            coefficients, feet = trial, there
+            if distance > _GAIN * before and step >= len(self.schedules) - 1:
+                break
+        return coefficients
+
+    def _feet(self, points: Points, targets: Floats, coefficients: Floats) -> _Feet:
+        matrices = self.basis.jet_matrices(points, 2)
+        jets = np.stack([matrix @ coefficients for matrix in matrices])
+        return _Feet(points, matrices, jets, targets - jets[0])
+
+    def _under(self, feet: list[_Feet], coefficients: Floats) -> list[_Feet]:
+        return [found.under(coefficients, part.values) for found, part in zip(feet, self.data, strict=True)]
+
+    def _distance(self, feet: list[_Feet]) -> float:
+        total = sum(float(part.weights @ found.distance**2) for found, part in zip(feet, self.data, strict=True))
+        return float(np.sqrt(total / sum(part.weights.sum() for part in self.data)))
+
+    def _slid(self, feet: list[_Feet], coefficients: Floats) -> list[_Feet]:
+        """Every datum one step of Newton's method nearer to its foot."""
+        return [self._slid_part(*each, coefficients) for each in zip(feet, self.data, self.longest, strict=True)]
+
+    def _slid_part(self, feet: _Feet, part: Samples, longest: Floats, coefficients: Floats) -> _Feet:
+        step = foot_step(feet.jets, part.values, longest)
+        found = self._feet(moved(self.basis.orbifold, feet.points, step), part.values, coefficients)
+        for share in (1.0, 0.25):
+            worse = np.flatnonzero(~(found.distance < feet.distance))
+            if not len(worse):
+                return found
+            back = feet.take(worse)
+            step = share * foot_step(back.jets, part.values[worse], longest[worse], bent=False)
+            again = self._feet(moved(self.basis.orbifold, back.points, step), part.values[worse], coefficients)
+            found = found.replaced(worse, again)
+        worse = np.flatnonzero(~(found.distance < feet.distance))
+        return found.replaced(worse, feet.take(worse))
+
+    def _change(self, feet: list[_Feet], coefficients: Floats, schedule: Schedule) -> Floats:
+        """The change of the coefficients by one step of Gauss and Newton."""
+        gram, right = Gram(self.basis.size, 6), np.zeros((self.basis.size, 3))
+        for found, part in zip(feet, self.data, strict=True):
+            weights, wanted = _linearised(found, part.weights, schedule)
+            gram.add(found.matrices[0], weights)
+            right += found.matrices[0].T @ wanted
+        blocks: list[Any] = list(gram.matrices())
+        if self.energy is not None and schedule.fairing:
+            stiff: Any = schedule.fairing * self._stiffness(coefficients, self.energy)
+            right -= stiff @ coefficients
+            blocks = [block + stiff if kind in (0, 3, 5) else block for kind, block in enumerate(blocks)]
+        return solved(_joined(blocks), right.T.reshape(-1, 1)).reshape(3, -1).T
+
+    def _stiffness(self, coefficients: Floats, energy: Energy) -> Floats | csr_array:
+        """The energy in the metric of the surface as it is."""
+        gram = Gram(self.basis.size)
+        for chosen, rows, slopes in self.fairness:
+            first, second = (slope @ coefficients for slope in slopes)
+            element = np.maximum(np.linalg.norm(np.cross(first, second), axis=1), np.finfo(float).tiny)
+            stretch = np.minimum(1 / element, _MOST_STRETCH * self.samples.stretch[chosen])
+            for row in rows:
+                gram.add(row, energy.weights(chosen, stretch))
+        return gram.matrices()[0]
+
+
+def _linearised(feet: _Feet, weights: Floats, schedule: Schedule) -> tuple[Floats, Floats]:
+    """For each datum the six entries of its quadratic form, (n, 6), and its right side, (n, 3)."""
+    normal, curvature = _normals(feet.jets)
+    away = np.linalg.norm(feet.gap, axis=1) * curvature
+    pull = np.maximum(schedule.pull, away / (1 + away))
+    along = pull + schedule.damping
+    form = np.stack([normal[:, a] * normal[:, b] for a, b in _PAIRS], axis=1) * np.maximum(1 - along, 0)[:, None]
+    form[:, [0, 3, 5]] += along[:, None]
+    height = np.einsum("ni,ni->n", feet.gap, normal)
+    wanted = normal * ((1 - pull) * height)[:, None] + pull[:, None] * feet.gap
+    return weights[:, None] * form, weights[:, None] * wanted
+
+
+def _normals(jets: Floats) -> tuple[Floats, Floats]:
+    """The unit normals (n, 3) and the larger principal curvatures (n,) of jets."""
+    cross = np.cross(jets[1], jets[2])
+    element = np.maximum(np.linalg.norm(cross, axis=1), np.finfo(float).tiny)
+    normal = cross / element[:, None]
+    e, f, g = (np.einsum("ni,ni->n", jets[a], jets[b]) for a, b in ((1, 1), (1, 2), (2, 2)))
+    bend, twist, other = (np.einsum("ni,ni->n", jets[k], normal) for k in (3, 4, 5))
+    with np.errstate(over="ignore"):
+        mean = (e * other - 2 * f * twist + g * bend) / (2 * element**2)
+        gaussian = (bend * other - twist**2) / element**2
+        curvature = np.abs(mean) + np.sqrt(np.maximum(mean**2 - gaussian, 0))
+    return normal, np.nan_to_num(curvature, posinf=np.finfo(float).max)
+
+
+def _joined(blocks: list[Any]) -> Floats | csr_array:
+    """The matrix of three coordinates from its six blocks."""
+    rows = [[blocks[kind] for kind in line] for line in _KIND]
+    if isinstance(blocks[0], np.ndarray):
+        return np.block(rows)
+    return csr_array(scipy.sparse.block_array(rows))
+
+
+def _stacked(a: csr_array, b: csr_array) -> csr_array:
+    return csr_array(scipy.sparse.vstack([a, b], format="csr"))

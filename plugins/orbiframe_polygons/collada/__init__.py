@@ -1,0 +1,1 @@
+"""COLLADA: the meshes of a scene in XML."""

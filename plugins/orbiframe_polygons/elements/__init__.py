@@ -1,0 +1,1 @@
+"""Elements: readers of the meshes of finite element programs, whose nodes have numbers of their own."""
