@@ -5,7 +5,7 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: demo warm-up test lint constraints clean
+.PHONY: demo warm-up test lint mutants constraints clean
 
 demo: $(VENV)/warm  ## one smooth surface from a mesh of genus 2
 	$(BIN)/orbiframe fit datasets/plate_genus2.off -o plate_genus2_smooth.ply
@@ -20,6 +20,9 @@ lint: $(VENV)/developer  ## style, types, and who imports whom
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+mutants: $(VENV)/developer  ## faults planted one at a time, and which of them no test notices
+	$(BIN)/python benchmarks/mutants.py
 
 constraints: $(VENV)/developer  ## the versions in use become the versions to install
 	$(BIN)/python -m pip freeze --exclude-editable > constraints.txt
