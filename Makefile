@@ -5,10 +5,12 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: demo test lint constraints clean
+.PHONY: demo warm-up test lint constraints clean
 
-demo: $(VENV)/user  ## one smooth surface from a mesh of genus 2
+demo: $(VENV)/warm  ## one smooth surface from a mesh of genus 2
 	$(BIN)/orbiframe fit datasets/plate_genus2.off -o plate_genus2_smooth.ply
+
+warm-up: $(VENV)/warm  ## everything compiled, so that nothing waits for it later
 
 test: $(VENV)/developer  ## all tests, with Open3D
 	$(BIN)/python -m pytest
@@ -31,6 +33,10 @@ $(VENV)/python:
 
 $(VENV)/user: pyproject.toml constraints.txt | $(VENV)/python
 	$(PIP) --editable .
+	touch $@
+
+$(VENV)/warm: $(VENV)/user $(shell find orbiframe plugins -name '*.py')
+	$(BIN)/orbiframe warm-up
 	touch $@
 
 $(VENV)/developer: pyproject.toml constraints.txt | $(VENV)/python

@@ -33,7 +33,7 @@ from orbiframe import Polyhedron, surface_type
 from orbiframe.errors import FormatError, OrbiframeError
 
 FOLDER = Path(__file__).parents[1] / "build" / "quality"
-OURS = ("default", "ps6", "linear", "linear ps6")
+OURS = ("default", "ps6", "linear")
 QUICK_METHODS = ("default", "ps6", "Loop", "butterfly", "LS3")
 
 

@@ -1,12 +1,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
 
-from orbiframe.cli.main import main
+from orbiframe.cli import main as program
 
 CUBE = """OFF
 8 6 12
@@ -34,12 +35,13 @@ class Ran(NamedTuple):
 
 
 @pytest.fixture
-def orbiframe(capsys) -> Callable[..., Ran]:
-    """Run the command line in this process."""
+def orbiframe(capsys, monkeypatch) -> Callable[..., Ran]:
+    """Run the command line in this process; nothing is said of compilation, which depends on what ran before."""
 
     def run(*arguments: object) -> Ran:
+        monkeypatch.setattr(program, "compilation_told", lambda *, quiet: nullcontext())
         capsys.readouterr()
-        status = main([str(argument) for argument in arguments])
+        status = program.main([str(argument) for argument in arguments])
         return Ran(status, *capsys.readouterr())
 
     return run

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from orbiframe import Fitter, OrbifoldSurface, Points, Registry
 from orbiframe.functions.samples import coordinate_samples
+from orbiframe.orbifolds import FlatLattice
 from orbiframe.testing.reference import reference_surface
 
 REGISTRY = Registry.discover()
@@ -24,6 +26,26 @@ def surface_of(name: str, basis: str, **options: object) -> OrbifoldSurface:
     return replace(
         first, basis=made, basis_name=basis, coefficients=coefficients, origin=np.array([1.0, -2.0, 0.5]), scale=1.5
     )
+
+
+def round_torus(surface: OrbifoldSurface) -> OrbifoldSurface:
+    """The same functions on a torus, with coefficients of a round one: it has an inside, so files can lie about it."""
+    lattice = FlatLattice.of(surface.orbifold)
+
+    def places(points: Points) -> np.ndarray:
+        u, v = 2 * np.pi * lattice.coordinates(points).T
+        return np.stack([(3 + np.cos(v)) * np.cos(u), (3 + np.cos(v)) * np.sin(u), np.sin(v)], axis=1)
+
+    return embedded(surface, places)
+
+
+def embedded(surface: OrbifoldSurface, places: Callable[[Points], np.ndarray]) -> OrbifoldSurface:
+    """The same functions with the coefficients that come nearest to given places, at ten points of every triangle."""
+    triangulation = surface.triangulation
+    face = np.repeat(np.arange(triangulation.polyhedron.face_count), 10)
+    points = triangulation.locate(face, np.random.default_rng(6).dirichlet([1, 1, 1], size=len(face)))
+    coefficients = np.linalg.lstsq(surface.basis.design_matrix(points).toarray(), places(points), rcond=None)[0]
+    return replace(surface, coefficients=coefficients, origin=np.zeros(3), scale=1.0)
 
 
 def on_cells(surface: OrbifoldSurface, barycentric: np.ndarray) -> np.ndarray:

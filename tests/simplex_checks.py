@@ -60,7 +60,7 @@ def reproduction_error(basis: SimplexSplines, arguments: Arguments, rng: np.rand
     The polynomial is one of the frame of a triangle; the functions that reach that triangle are seen from there. Where
     one function reaches it through two lifts it has no one coefficient, and the triangle is left out.
     """
-    domain, elements = basis.domain, basis.knot_sets
+    domain, sets = basis.domain, basis.knot_sets
     first, element, isometry = basis._reach
     back = domain.geometry.inverse(isometry)
     errors = []
@@ -68,10 +68,10 @@ def reproduction_error(basis: SimplexSplines, arguments: Arguments, rng: np.rand
         forms = rng.normal(size=(basis.degree, 3))
         coefficients, clear = np.full(basis.size, np.nan), True
         for c in range(first[face], first[face + 1]):
-            knots = elements.knots[element[c]] @ back[c].T
-            for o in range(elements.column.shape[1]):
-                column = elements.column[element[c], o]
-                if elements.factor[element[c], o] == 0:
+            knots = sets.knots[element[c]] @ back[c].T
+            for o in range(sets.column.shape[1]):
+                column = sets.column[element[c], o]
+                if sets.factor[element[c], o] == 0:
                     continue
                 value = polarised(forms, knots[arguments(element[c], o)])
                 clear &= bool(np.isnan(coefficients[column]) or abs(coefficients[column] - value) < 1e-6)

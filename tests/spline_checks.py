@@ -56,7 +56,7 @@ def glued(orbifold: Orbifold, corners: np.ndarray, group: np.ndarray) -> Geodesi
         np.einsum("fij,fcj->fci", back, corners),
         twin,
         same,
-        back[face] @ gluing @ placement[twin // 3],
+        geometry.nearest_isometry(back[face] @ gluing @ placement[twin // 3]),
         np.zeros(len(corners), dtype=np.intp),
         placement,
     )

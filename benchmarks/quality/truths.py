@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import jax
 import numpy as np
@@ -20,6 +20,18 @@ Floats = NDArray[np.float64]
 jax.config.update("jax_enable_x64", True)
 
 _STEPS = 12
+
+
+def padded(function: Callable[[Floats], Any]) -> Callable[[Floats], Any]:
+    """A function compiled for points (n, k), made longer up to a power of two: few lengths, few compilations."""
+    compiled = jax.jit(jax.vmap(function))
+
+    def called(x: Floats) -> Any:
+        count = len(x)
+        full = np.concatenate([x, np.repeat(x[:1], 2 ** int(np.ceil(np.log2(max(count, 1024)))) - count, axis=0)])
+        return jax.tree.map(lambda a: np.asarray(a)[:count], compiled(full))
+
+    return called
 
 
 class Feet(NamedTuple):
@@ -55,25 +67,25 @@ class Level(Truth):
 
     @cached_property
     def _value(self) -> Callable[[Floats], Floats]:
-        return jax.jit(jax.vmap(self.field))
+        return padded(self.field)
 
     @cached_property
     def _slope(self) -> Callable[[Floats], tuple[Floats, Floats]]:
-        return jax.jit(jax.vmap(jax.value_and_grad(self.field)))
+        return padded(jax.value_and_grad(self.field))
 
     @cached_property
     def _bend(self) -> Callable[[Floats], Floats]:
-        return jax.jit(jax.vmap(jax.hessian(self.field)))
+        return padded(jax.hessian(self.field))
 
     def net(self, step: float) -> Polyhedron:
         """A mesh of quadrilaterals with its vertices on the level set, to rounding."""
-        net = surface_net(lambda x: np.asarray(self._value(x)), self.low, self.high, step)
+        net = surface_net(self._value, self.low, self.high, step)
         return net.with_vertices(self.onto(net.vertices))
 
     def onto(self, x: Floats, steps: int = 20) -> Floats:
         """Points moved along gradients onto the level set."""
         for _ in range(steps):
-            value, slope = (np.asarray(a) for a in self._slope(x))
+            value, slope = self._slope(x)
             x = x - (value / (slope**2).sum(axis=1))[:, None] * slope
         return x
 
@@ -91,10 +103,10 @@ class Level(Truth):
         del normals
         foot = self.samples[self._tree.query(x)[1]]
         for _ in range(_STEPS):
-            normal = _unit(np.asarray(self._slope(foot)[1]))
+            normal = _unit(self._slope(foot)[1])
             gap = x - foot
             foot = self.onto(foot + gap - (gap * normal).sum(axis=1)[:, None] * normal, 3)
-        slope, bend = np.asarray(self._slope(foot)[1]), np.asarray(self._bend(foot))
+        slope, bend = self._slope(foot)[1], self._bend(foot)
         return Feet(foot, _unit(slope), _gaussian_of_level(slope, bend))
 
 
@@ -110,11 +122,11 @@ class Chart(Truth):
     def _jet(self) -> Callable[[Floats], tuple[Floats, Floats, Floats]]:
         first = jax.jacfwd(self.place)
         second = jax.jacfwd(first)
-        return jax.jit(jax.vmap(lambda u: (self.place(u), first(u), second(u))))
+        return padded(lambda u: (self.place(u), first(u), second(u)))
 
     def points(self, u: Floats) -> Floats:
         """The points at parameters."""
-        return np.asarray(self._jet(u)[0])
+        return self._jet(u)[0]
 
     @cached_property
     def samples(self) -> Floats:
@@ -133,7 +145,7 @@ class Chart(Truth):
         """Newton's method on the parameters from the nearest sample whose normal agrees."""
         u = self.grid[self._nearest(x, normals)]
         for _ in range(_STEPS):
-            value, first, second = (np.asarray(a) for a in self._jet(u))
+            value, first, second = self._jet(u)
             gap = x - value
             metric = np.einsum("nia,nib->nab", first, first)
             hessian = metric - np.einsum("ni,niab->nab", gap, second)
@@ -141,7 +153,7 @@ class Chart(Truth):
             matrix = np.where(safe[:, None, None], hessian, metric)
             step = np.linalg.solve(matrix, np.einsum("nia,ni->na", first, gap)[..., None])[..., 0]
             u = u + step
-        value, first, second = (np.asarray(a) for a in self._jet(u))
+        value, first, second = self._jet(u)
         return Feet(value, *_shape(first, second))
 
     def _nearest(self, x: Floats, normals: Floats | None) -> NDArray[np.intp]:
@@ -165,7 +177,6 @@ def _gaussian_of_level(slope: Floats, bend: Floats) -> Floats:
 
 def _shape(first: Floats, second: Floats) -> tuple[Floats, Floats]:
     """Unit normals and Gaussian curvature from derivatives (n, 3, 2) and (n, 3, 2, 2)."""
-    first, second = np.asarray(first), np.asarray(second)
     normal = _unit(np.cross(first[:, :, 0], first[:, :, 1]))
     form = np.einsum("ni,niab->nab", normal, second)
     return normal, np.linalg.det(form) / np.linalg.det(np.einsum("nia,nib->nab", first, first))

@@ -38,7 +38,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         except SystemExit as stop:
             status = stop.code if isinstance(stop.code, int) else 0
         except (Exception, KeyboardInterrupt) as error:
-            return _flushed(0) if isinstance(error, BrokenPipeError) else _flushed(_report(error, debug))
+            status = 0 if isinstance(error, BrokenPipeError) else _report(error, debug)
         return _flushed(status)
 
 
@@ -111,8 +111,9 @@ def _show_warnings_of_users(debug: bool) -> None:
 def _report(error: BaseException, debug: bool) -> int:
     if debug:
         traceback.print_exception(error)
-    if not (isinstance(error, OSError) and _output_is_lost()):
-        say(_sentence(error))
+    if isinstance(error, OSError) and error.filename is None:
+        return _lost(error)
+    say(_sentence(error))
     if isinstance(error, KeyboardInterrupt):
         return INTERRUPTED
     return 2 if isinstance(error, UsageError) else 1
@@ -128,15 +129,6 @@ def _sentence(error: BaseException) -> str:
     return f"internal error, {type(error).__name__}: {error}; run again with --debug for the traceback, and report it"
 
 
-def _output_is_lost() -> bool:
-    """Whether the standard output takes nothing any more."""
-    try:
-        _flush()
-    except OSError:
-        return True
-    return False
-
-
 def _flushed(status: int) -> int:
     """The status, once all is said; another one if the standard output, full for example, does not take it.
 
@@ -147,10 +139,15 @@ def _flushed(status: int) -> int:
     except BrokenPipeError:
         silence(sys.stdout)
     except OSError as error:
-        silence(sys.stdout)
-        say(f"the standard output cannot be written: {error.strerror}; files that were asked for are made")
-        return status or 1
+        return status or _lost(error)
     return status
+
+
+def _lost(error: OSError) -> int:
+    """Say that the standard output takes nothing any more; errors of files have their names."""
+    silence(sys.stdout)
+    say(f"the standard output cannot be written: {error.strerror}; files that were asked for are made")
+    return 1
 
 
 def _flush() -> None:

@@ -6,7 +6,6 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import cache
 from typing import TextIO
 
 from orbiframe.cli.speech import say
@@ -17,10 +16,15 @@ from orbiframe.compiled import compilation
 _PATIENCE = 1.5
 
 
-@cache
+# By the identity of the stream, which the line keeps alive.
+_lines: dict[int, StatusLine] = {}
+
+
 def status_line(stream: TextIO | None) -> StatusLine | None:
     """The status line of a stream, the same for all who write there; None where it is no terminal."""
-    return StatusLine(stream) if stream is not None and stream.isatty() else None
+    if stream is None or not stream.isatty():
+        return None
+    return _lines.setdefault(id(stream), StatusLine(stream))
 
 
 class Progress:
@@ -56,6 +60,8 @@ class CompilationProgress:
         if self.count == 1:
             self._say("compiling, once on this machine …")
             threading.Thread(target=self._go_on, daemon=True).start()
+        elif self._line:
+            self._say_more()
 
     def ends(self) -> None:
         """Hear that no function is being compiled any more."""
@@ -69,7 +75,10 @@ class CompilationProgress:
     def _go_on(self) -> None:
         while not self._done.wait(_PATIENCE):
             if compilation.underway:
-                self._say(f"compiling, {self.count} functions so far …")
+                self._say_more()
+
+    def _say_more(self) -> None:
+        self._say(f"compiling, once on this machine: {self.count} functions so far …")
 
     def _say(self, text: str) -> None:
         if self._line:

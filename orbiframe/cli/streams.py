@@ -128,10 +128,17 @@ def _require_open(stream: TextIO | None, noun: str) -> None:
 def _receive(place: Path, limit: int) -> None:
     _require_open(sys.stdin, "input")
     with place.open("wb") as file:
-        while block := sys.stdin.buffer.read(_BLOCK):
+        while block := _block():
             file.write(block)
             if file.tell() > limit:
                 raise FormatError(f"{place}: there are more bytes than the limit of {limit}")
+
+
+def _block() -> bytes:
+    try:
+        return sys.stdin.buffer.read(_BLOCK)
+    except OSError as error:
+        raise FormatError(f"the standard input cannot be read: {error.strerror}; connect it to a mesh") from error
 
 
 def _send(place: Path, path: Path) -> None:

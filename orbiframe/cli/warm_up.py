@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from orbiframe.cli.progress import status_line
+from orbiframe.cli.speech import say
 from orbiframe.compiled import compilation
 from orbiframe.components.registry import Registry
 from orbiframe.errors import OrbiframeError
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from orbiframe.meshes.polyhedron import Polyhedron
 
 _BAR = 20
-# A torus of 2 n^2 triangles, large enough for all that is done only to large meshes.
+# Of a torus of 2 n^2 triangles: large enough for all that is done only to large meshes.
 _LARGE = 419
 
 
@@ -64,7 +65,7 @@ def _say(number: int, total: int, text: str) -> None:
         bar = f"[{'=' * filled}{' ' * (_BAR - filled)}] {number} of {total}: {text}"
         line.leave(bar) if number == total else line.show(bar)
     elif number < total:
-        print(f"orbiframe: {number + 1} of {total}: {text}", file=sys.stderr, flush=True)
+        say(f"{number + 1} of {total}: {text}")
 
 
 def _succeeds(command: str, registry: Registry) -> bool:
@@ -75,7 +76,7 @@ def _succeeds(command: str, registry: Registry) -> bool:
         try:
             return int(args.run(args, registry)) == 0
         except OrbiframeError as error:
-            print(f"orbiframe: {command}: {error}", file=sys.stderr)
+            say(f"{command}: {error}")
             return False
 
 
@@ -85,7 +86,7 @@ def _sample_folder(registry: Registry) -> Iterator[None]:
     from orbiframe.files import gate
     from orbiframe.testing.polyhedra import reference_polyhedra
 
-    samples = {**reference_polyhedra(), "large": _large_torus()}
+    samples = {**reference_polyhedra(), "large": _large_torus(_LARGE)}
     with tempfile.TemporaryDirectory() as folder:
         for name, polyhedron in samples.items():
             gate.write(Path(folder) / f"{name.replace(' ', '_').lower()}.off", polyhedron, registry)
@@ -97,12 +98,11 @@ def _sample_folder(registry: Registry) -> Iterator[None]:
             os.chdir(before)
 
 
-def _large_torus() -> Polyhedron:
+def _large_torus(n: int) -> Polyhedron:
     import numpy as np
 
     from orbiframe.meshes.polyhedron import Polyhedron
 
-    n = _LARGE
     here = np.arange(n * n).reshape(n, n)
     right, up, across = np.roll(here, -1, 1), np.roll(here, -1, 0), np.roll(here, (-1, -1), (0, 1))
     faces = np.stack([here, up, across, here, across, right], axis=-1).reshape(-1, 3)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
+from numba.core.sigutils import normalize_signature
 from numba.core.types.misc import unliteral
 
 from orbiframe.compiled import compilation
@@ -27,7 +29,12 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
 
     def compile(self, signature: Any) -> Any:
         """The code for a signature: that of before, or kept code, or new code."""
-        with compilation.ended():
+        # Under the lock, since another thread may just be making a version without a wrapper.
+        with global_compiler_lock, compilation.ended():
+            kinds = tuple(normalize_signature(signature)[0])
+            if self.wrapped and kinds in self._bare:
+                self._bare.remove(kinds)
+                del self.overloads[kinds]
             return super().compile(signature)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
@@ -47,13 +54,6 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
         else:
             self.overloads[tuple(result.signature.args)] = result
             self._bare.add(tuple(result.signature.args))
-
-    def _compile_for_args(self, *args: Any, **kws: Any) -> Any:
-        kinds = tuple(self.typeof_pyval(arg) for arg in args)
-        if kinds in self._bare:
-            self._bare.remove(kinds)
-            del self.overloads[kinds]
-        return super()._compile_for_args(*args, **kws)
 
     def _wrap(self, wrapped: bool) -> None:
         self.wrapped = wrapped

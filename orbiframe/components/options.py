@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import json
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -11,6 +12,9 @@ from typing import Any
 
 from orbiframe.components.suggestion import did_you_mean
 from orbiframe.errors import ConfigError
+
+# Beyond these no option of any component makes sense, and libraries fail in ways of their own.
+_MOST_BITS, _DEEPEST = 256, 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +75,7 @@ def checked_value(annotation: Any, value: object, key: str, places: Mapping[str,
     """The value as the type that the annotation asks for; raises ConfigError where it is of another type."""
     from pydantic import ValidationError
 
+    _require_small(value, key, places)
     try:
         # TOML has the types of JSON, where a tuple is a list; strict, so that "3" is no number and 1 no truth value.
         return _adapter(annotation).validate_json(json.dumps(value, default=str), strict=True)
@@ -79,6 +84,22 @@ def checked_value(annotation: Any, value: object, key: str, places: Mapping[str,
         inner = "".join(f"[{part}]" for part in found["loc"] if isinstance(part, int))
         reason = found["msg"][0].lower() + found["msg"][1:]
         raise ConfigError(f"{place_of(key, places)}{key}{inner} = {value!r}: {reason}") from error
+
+
+def _require_small(value: object, key: str, places: Mapping[str, str], depth: int = 0) -> None:
+    """Raise ConfigError for numbers that are not finite or have hundreds of digits, and for tables within tables."""
+    problem = ""
+    if isinstance(value, float) and not math.isfinite(value):
+        problem = f"{value} is no finite number"
+    elif isinstance(value, int) and value.bit_length() > _MOST_BITS:
+        problem = f"the number has about {value.bit_length() * 3 // 10} digits"
+    elif depth > _DEEPEST:
+        problem = f"lists and tables are nested more than {_DEEPEST} deep"
+    if problem:
+        raise ConfigError(f"{place_of(key, places)}{key}: {problem}; give another value")
+    if isinstance(value, Mapping | list | tuple):
+        for item in value.values() if isinstance(value, Mapping) else value:
+            _require_small(item, key, places, depth + 1)
 
 
 @lru_cache(maxsize=256)

@@ -7,6 +7,8 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
+LARGEST = 2**24
+
 
 def imported_file(path: Path) -> ModuleType:
     """The module of a Python file, importable from now on by the stem of its name: "my_basis" for my_basis.py.
@@ -30,6 +32,8 @@ def imported_file(path: Path) -> ModuleType:
 def _require_usable(path: Path) -> None:
     if not path.is_file():
         raise FileNotFoundError("there is no such file")
+    if path.stat().st_size > LARGEST:
+        raise ImportError(f"it has {path.stat().st_size} bytes, and a plugin file has at most {LARGEST}")
     if not path.stem.isidentifier():
         raise ImportError(f"'{path.stem}' is not a Python name; rename the file")
     home = _home_of(path.stem)

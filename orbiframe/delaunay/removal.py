@@ -7,11 +7,23 @@ from numpy.typing import ArrayLike, NDArray
 
 from orbiframe.compiled.decorator import compiled
 from orbiframe.compiled.matrices import copy, multiply, set_identity
-from orbiframe.delaunay.lawson_flips import legalise, outside, push, push_around, turn
+from orbiframe.delaunay.lawson_flips import (
+    TOLERANCE,
+    chord,
+    legalise,
+    outside,
+    push,
+    push_around,
+    turn,
+    versine,
+)
 from orbiframe.delaunay.triangle_arrays import TriangleArrays, after, before, corner, flip, merge, move
 from orbiframe.errors import MapError
 
 Ints = NDArray[np.intp]
+
+# Against the squares of its edges: rounding must not decide whether a flatter triangle is one.
+_FLAT = 1e-12
 
 
 def remove(triangles: TriangleArrays, vertices: ArrayLike) -> None:
@@ -38,7 +50,9 @@ def _remove(triangles, order):  # type: ignore[no-untyped-def]
             degree, ring = _link(triangles, vertex, ring)
             if degree == 3:
                 break
-            e = _soonest(triangles.curvature, corner(triangles, triangles.seat[vertex]), degree, ring)
+            e = _soonest(triangles.curvature, corner(triangles, triangles.seat[vertex]), degree, ring, _FLAT)
+            if e < 0:
+                e = _soonest(triangles.curvature, corner(triangles, triangles.seat[vertex]), degree, ring, 0.0)
             if e < 0:
                 return vertex
             flip(triangles, e)
@@ -92,13 +106,14 @@ def _longer(edge, x, loop):  # type: ignore[no-untyped-def]
 
 
 @compiled(arrays=False)
-def _soonest(curvature, v, degree, ring):  # type: ignore[no-untyped-def]
+def _soonest(curvature, v, degree, ring, flat):  # type: ignore[no-untyped-def]
     """The edge at a vertex v that flips first if v, with all its lifts, is raised over the surface of the lifted sites.
 
     That is the way in which Delaunay triangulations with growing weights lose a vertex, so it never gets stuck before
     v is free, and ends at the Delaunay triangulation of the others (Devillers, On deletion in Delaunay triangulations,
     2002; for loops at v the other lifts rise as well). Only edges in convex quadrilaterals count; at degree 4 also
-    those whose flip leaves v on an edge or beyond it, since v goes next. Returns -1 if there is none.
+    those whose flip leaves v on an edge or beyond it, since v goes next. flat: how small against its edges a triangle
+    counts as flat. Of edges that flip at one time the first is taken. Returns -1 if there is none.
     """
     edge, x, loop = ring
     best, soonest = -1, np.inf
@@ -121,9 +136,11 @@ def _soonest(curvature, v, degree, ring):  # type: ignore[no-untyped-def]
             speed += rest
         if loop[i2]:
             speed -= turn(curvature, v, a, b)
-        if ear <= 0 or rest <= 0 or speed <= 0:
+        least = flat * (versine(curvature, chord(curvature, a, b)) + versine(curvature, chord(curvature, b, c)))
+        if ear <= least or rest <= least or speed <= least:
             continue
-        time = outside(curvature, v, a, b, c)[0] / speed
-        if time < soonest:
+        height, size = outside(curvature, v, a, b, c)
+        time = height / speed
+        if time < soonest - TOLERANCE * size / speed:
             best, soonest = edge[i], time
     return best

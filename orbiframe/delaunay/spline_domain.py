@@ -13,7 +13,7 @@ from orbiframe.errors import FitError
 from orbiframe.meshes.edge_paths import edge_graph, farthest_points, outermost_vertex
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
-from orbiframe.triangulations.girth import site_lengths
+from orbiframe.triangulations.local_girth import site_lengths
 from orbiframe.triangulations.triangulation import Triangulation
 
 # How much of the density of sites follows the girth: triangles of one star stay of one size where the map changes fast.

@@ -15,15 +15,18 @@ SIZE_LIMIT = 2**32
 # ---- before a reader, round any component -------------------------------------------------------------------------
 
 
-def require_readable(path: Path, size_limit: int = SIZE_LIMIT) -> None:
-    """Raise FormatError unless there is a regular file that is neither empty nor larger than the limit (in bytes)."""
+def require_readable(path: Path, size_limit: int = SIZE_LIMIT, *, empty: bool = False) -> None:
+    """Raise FormatError unless there is a regular file that is no larger than the limit (in bytes), nor empty.
+
+    empty: let an empty file pass.
+    """
     try:
         status = path.stat()
     except (OSError, ValueError) as error:
         raise FormatError(_absent(path, error)) from error
     if not stat.S_ISREG(status.st_mode):
         raise FormatError(f"{path}: this is {species(status.st_mode)}, but a regular file is required")
-    if status.st_size == 0:
+    if status.st_size == 0 and not empty:
         raise FormatError(f"{path}: the file is empty")
     if status.st_size > size_limit:
         raise FormatError(

@@ -111,9 +111,9 @@ def main(verb: str, target: str, path: str, parcel: str, memory: str) -> int:
         return _said(f"{path}: the library for this format ended its process; the file is not what it expects")
     except PermissionError as error:
         return _said(f"{path}: {error.args[0] if len(error.args) == 1 else NAMES_ANOTHER}")
-    except Exception as error:
-        # What a library says of itself, such as KeyError, helps nobody; --debug shows its kind.
-        return _said(f"{path}: the library for this format cannot make sense of the file ({type(error).__name__})")
+    except Exception:
+        # What a library says of its own errors, such as KeyError, helps nobody.
+        return _said(f"{path}: the library for this format cannot make sense of the file; is it damaged?")
     return 0
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 from orbiframe.components.geometry_names import geometry_name
 from orbiframe.components.options import checked_options
 from orbiframe.errors import FormatError, OrbiframeError
-from orbiframe.files.array_archive import DAMAGE, ArrayArchive, Shape
+from orbiframe.files.array_archive import ArrayArchive, Shape
 from orbiframe.files.gate import Components
 from orbiframe.files.outputs import output
 from orbiframe.files.places import require_readable
@@ -112,21 +111,29 @@ def load_surface(path: Path, registry: Components) -> OrbifoldSurface:
     path = Path(path)
     require_readable(path)
     try:
-        with ArrayArchive(path) as archive:
-            about = _read_about(archive, path)
-            _require_shapes(archive.shapes)
-            arrays = {name: archive.read(name) for name in _KINDS if name in archive.shapes}
+        arrays, about = _read(path)
         return _surface(arrays, about, registry, path)
     except BrokenLaw as error:
         raise FormatError(f"{path}: {error}; the file was changed or damaged: save the surface again") from error
-    except (*DAMAGE, zipfile.BadZipFile, zipfile.LargeZipFile, MemoryError) as error:
+
+
+# ---- reading ------------------------------------------------------------------------------------------------------
+
+
+def _read(path: Path) -> tuple[Arrays, About]:
+    """All arrays, and what the file says of itself; whatever the parsers of archives and texts raise is a sentence."""
+    try:
+        with ArrayArchive(path) as archive:
+            about = _read_about(archive, path)
+            _require_shapes(archive.shapes)
+            return {name: archive.read(name) for name in _KINDS if name in archive.shapes}, about
+    except (BrokenLaw, FormatError):
+        raise
+    except Exception as error:
         raise FormatError(
             f"{path}: this is not a whole surface file ({type(error).__name__}: {error}); make it with "
             "`orbiframe fit MESH -o OUT --save FILE`"
         ) from error
-
-
-# ---- reading ------------------------------------------------------------------------------------------------------
 
 
 def _read_about(archive: ArrayArchive, path: Path) -> About:

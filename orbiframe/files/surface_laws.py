@@ -144,6 +144,7 @@ def require_map(triangulation: Triangulation) -> None:
     patch, points, step = triangulation.patch, triangulation.points, triangulation.transition
     geometry = atlas.geometry
     require((patch >= 0) & (patch < atlas.patch_count), "patch", f"patches are 0 to {atlas.patch_count - 1}")
+    require(np.bincount(patch, minlength=atlas.patch_count) > 0, "atlas_radius", "every patch holds a vertex")
     require(np.isfinite(points), "points", "coordinates are finite")
     with np.errstate(all="ignore"):
         require(geometry.point_defect(points) <= _NEAR * _squares(points), "points", f"they lie in {geometry.name}")

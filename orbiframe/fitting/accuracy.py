@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from orbiframe.errors import FitError
 from orbiframe.functions.basis import DifferentiableBasis
-from orbiframe.functions.foot_points import foot_points, foot_step
+from orbiframe.functions.feet import foot_points, foot_step
 from orbiframe.functions.samples import Samples, places
 from orbiframe.meshes.nearest_points import NearestPoints
 from orbiframe.meshes.sizes import vector_areas

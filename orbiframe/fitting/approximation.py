@@ -22,7 +22,7 @@ from orbiframe.functions.samples import Samples
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.surfaces.surface import OrbifoldSurface
-from orbiframe.triangulations.girth import averaged, girth
+from orbiframe.triangulations.local_girth import averaged, girth
 
 Floats = NDArray[np.float64]
 

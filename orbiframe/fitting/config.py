@@ -16,7 +16,9 @@ from annotated_types import Ge, Gt
 from orbiframe.components.options import Option, checked_options, checked_value, options_of, place_of, require_known
 from orbiframe.components.registry import Registry
 from orbiframe.components.suggestion import did_you_mean
-from orbiframe.errors import ConfigError, PluginError, UsageError
+from orbiframe.errors import ConfigError, FormatError, PluginError, UsageError
+from orbiframe.files.places import require_readable
+from orbiframe.fitting.limits import require_size
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +75,7 @@ STEPS = {
     "fitter": ("fitter", "name", "sliding"),
 }
 TABLES = (*STEPS, "data", "output")
+_LARGEST_FILE = 2**20
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,6 +189,7 @@ class Config:
 
         The options of an open step must belong to one of the components of its kind.
         """
+        require_size(self.basis.options.get("size"), self.places)
         for table, step in self.steps.items():
             if not step.open:
                 self.component(table, registry)
@@ -196,16 +200,19 @@ class Config:
 
 def _read(path: Path) -> str:
     try:
+        require_readable(path, _LARGEST_FILE, empty=True)
         return path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
+    except (FormatError, OSError, UnicodeDecodeError) as error:
         raise ConfigError(f"the configuration {path} cannot be read: {error}") from error
 
 
 def _parsed(text: str, path: Path | None) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # also for numbers of thousands of digits
         raise ConfigError(f"{path} is not TOML: {error}") from error
+    except RecursionError as error:
+        raise ConfigError(f"{path}: lists and tables are nested too deep; no option needs that") from error
 
 
 _HEADER = re.compile(r"\s*\[\s*([\w-]+)\s*\]")
@@ -236,10 +243,16 @@ def parsed_override(text: str) -> tuple[str, str, Any]:
 
 
 def _toml_value(text: str) -> Any:
+    """The value that a text is in TOML, or the text itself where it is none or more than one."""
     try:
-        return tomllib.loads(f"value = {text}")["value"]
+        found = tomllib.loads(f"value = {text}")
     except tomllib.TOMLDecodeError:
         return text
+    except ValueError as error:  # numbers of thousands of digits
+        raise ConfigError(f"--set …={text[:20]}…: {error}") from error
+    except RecursionError as error:
+        raise ConfigError(f"--set …={text[:20]}…: lists and tables are nested too deep") from error
+    return found["value"] if len(found) == 1 else text
 
 
 def require_table(name: str, known: Sequence[str], places: Mapping[str, str]) -> None:

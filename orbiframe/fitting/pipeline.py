@@ -16,6 +16,7 @@ from orbiframe.files import gate
 from orbiframe.fitting.approximation import Approximations
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.inspection import inspected
+from orbiframe.fitting.limits import require_density
 from orbiframe.fitting.mapping import Mapping
 from orbiframe.fitting.report import report
 from orbiframe.fitting.stages import Progress, Stages
@@ -60,6 +61,7 @@ def fit(
     config = config.checked(registry)
     polyhedron = mesh if isinstance(mesh, Polyhedron) else stages("read", read_mesh, Path(mesh), config, registry)
     surface_type = stages("topology", require_closed_surface, polyhedron)
+    require_density(config.output.refine, int((polyhedron.face_sizes - 2).sum()), config.places)
     unit, origin, scale = _normalised(oriented(without_unused_vertices(polyhedron)))
     triangles = stages("triangles", triangulated, unit)
     mapping = Mapping(unit, triangles, surface_type, config, stages)

@@ -19,7 +19,7 @@ from orbiframe.meshes.sizes import vector_areas
 from orbiframe.meshes.surface_type import SurfaceType
 from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.triangulations.face_shapes import FaceShapes
-from orbiframe.triangulations.girth import girth_radius
+from orbiframe.triangulations.local_girth import girth_radius
 from orbiframe.triangulations.lost_digits import crowding_of
 from orbiframe.triangulations.triangulation import Triangulation
 
@@ -126,10 +126,16 @@ def _map_report(triangulation: Triangulation) -> dict[str, Any]:
         "triangles": triangulation.polyhedron.face_count,
         "not_positive": triangulation.not_positive,
         "area_defect": triangulation.area_defect,
-        "crowding": crowding_of(triangulation)._asdict(),
+        "crowding": _crowding_report(triangulation),
         "angle_distortion": {"median": median, "p95": p95, "max": float(triangulation.angle_distortion.max())},
         "weights": triangulation.weights,
     }
+
+
+def _crowding_report(triangulation: Triangulation) -> dict[str, float]:
+    """The lost digits to three places: the origins of patches, from which they are counted, are set no better."""
+    crowding = crowding_of(triangulation)
+    return {**crowding._asdict(), "digits_lost": round(crowding.digits_lost, 3)}
 
 
 def _weighted_quantiles(values: NDArray[np.float64], weights: NDArray[np.float64], levels: list[float]) -> list[float]:

@@ -6,8 +6,9 @@ from .basis import (
     PiecewiseBasis as PiecewiseBasis,
     lifted as lifted,
 )
+from .feet import around as around, foot_points as foot_points, foot_step as foot_step, moved as moved
 from .fitter import Fitter as Fitter
-from .foot_points import foot_points as foot_points, foot_step as foot_step, moved as moved
 from .jet_quotient import divide_jets as divide_jets
 from .orbit_sum_basis import OrbitSumBasis as OrbitSumBasis
 from .samples import Samples as Samples, coordinate_samples as coordinate_samples
+from .smooth_samples import semi_smooth_samples as semi_smooth_samples, vertex_samples as vertex_samples

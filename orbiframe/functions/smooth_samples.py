@@ -10,7 +10,7 @@ from orbiframe.meshes.bending import SHARP, bending
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
-from orbiframe.triangulations.girth import girth
+from orbiframe.triangulations.local_girth import girth
 from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from orbiframe.compiled.decorator import compiled
 from orbiframe.meshes.polyhedron import Polyhedron
 
 Floats = NDArray[np.float64]
@@ -37,7 +37,7 @@ class NearestPoints:
         return found
 
 
-@njit(cache=True)
+@compiled
 def _least(points, corners, face):  # type: ignore[no-untyped-def]
     """The least distance of each point to its triangles (n, k)."""
     found = np.empty(len(points))
@@ -49,7 +49,7 @@ def _least(points, corners, face):  # type: ignore[no-untyped-def]
     return found
 
 
-@njit(cache=True, inline="always")
+@compiled(inline=True)
 def _square(p, corners):  # type: ignore[no-untyped-def]
     """The squared distance of a point to a triangle: to its plane over the inside, else to the nearest side."""
     a, b, c = corners[0], corners[1], corners[2]
@@ -64,7 +64,7 @@ def _square(p, corners):  # type: ignore[no-untyped-def]
     return min(_to_side(p, a, b), min(_to_side(p, b, c), _to_side(p, c, a)))
 
 
-@njit(cache=True, inline="always")
+@compiled(inline=True)
 def _to_side(p, a, b):  # type: ignore[no-untyped-def]
     side, w = b - a, p - a
     length = side @ side

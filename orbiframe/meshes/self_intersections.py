@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from orbiframe.compiled.decorator import compiled
 from orbiframe.meshes.polyhedron import Polyhedron
 
 Ints = NDArray[np.intp]
@@ -45,7 +45,7 @@ def _near_pairs(corners: NDArray[np.float64]) -> list[tuple[Ints, Ints]]:
     return pairs
 
 
-@njit(cache=True)
+@compiled
 def _mark(corners, triangles, first, second, found):  # type: ignore[no-untyped-def]
     for k in range(len(first)):
         f, g = first[k], second[k]
@@ -68,7 +68,7 @@ def _mark(corners, triangles, first, second, found):  # type: ignore[no-untyped-
             found[f] = found[g] = True
 
 
-@njit(cache=True, inline="always")
+@compiled(inline=True)
 def _volume(a, b, c, d):  # type: ignore[no-untyped-def]
     u0, u1, u2 = b[0] - a[0], b[1] - a[1], b[2] - a[2]
     v0, v1, v2 = c[0] - a[0], c[1] - a[1], c[2] - a[2]
@@ -76,7 +76,7 @@ def _volume(a, b, c, d):  # type: ignore[no-untyped-def]
     return u0 * (v1 * w2 - v2 * w1) + u1 * (v2 * w0 - v0 * w2) + u2 * (v0 * w1 - v1 * w0)
 
 
-@njit(cache=True)
+@compiled
 def _side_meets(x, corner, y):  # type: ignore[no-untyped-def]
     """Whether the side of triangle x opposite to a corner passes through the inside of triangle y."""
     p, q = x[(corner + 1) % 3], x[(corner + 2) % 3]

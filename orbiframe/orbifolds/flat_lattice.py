@@ -18,6 +18,8 @@ Ints = NDArray[np.intp]
 
 # Relative to the size of X/H: shorter shifts are rounding, and linear parts this near to 1 or a reflection are one.
 _ROUNDING = 1e-6
+# Lengths and halves that differ relatively by less are equal: rounding must not choose among vectors of one length.
+_TIE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,26 +83,39 @@ def reduced_basis(vectors: Floats, least: float) -> Floats:
     rest = _by_length(vectors, least)
     while len(rest):
         first, others = rest[0], rest[1:]
-        others = _by_length(others - np.outer(np.round(others @ first / (first @ first)), first), least)
+        others = _by_length(others - np.outer(_nearest(others @ first / (first @ first)), first), least)
         if not len(others):
             break
-        if np.linalg.norm(others[0]) < (1 - 1e-9) * np.linalg.norm(first):
+        if np.linalg.norm(others[0]) < (1 - _TIE) * np.linalg.norm(first):
             rest = _by_length(np.concatenate([rest[:1], others]), least)
             continue
         basis = np.stack([first, others[0]], axis=1)
-        left = _by_length(others[1:] - np.round(others[1:] @ np.linalg.inv(basis).T) @ basis.T, least)
+        left = _by_length(others[1:] - _nearest(others[1:] @ np.linalg.inv(basis).T) @ basis.T, least)
         if not len(left):
-            basis[:, 1] *= np.sign(np.linalg.det(basis))
-            return basis
+            return _first_of_equals(basis, least)
         rest = _by_length(np.concatenate([basis.T, left]), least)
     raise GeometryError("the transitions of the atlas do not shift the plane in two directions; check the group")
 
 
+def _first_of_equals(basis: Floats, least: float) -> Floats:
+    """The basis of those two shortest vectors that come first: all are among these four and their opposites."""
+    first, second = basis.T
+    shortest = _by_length(np.stack([first, second, first + second, first - second]), least)[:2].T
+    return np.asarray(shortest * [1.0, np.sign(np.linalg.det(shortest))])
+
+
 def _by_length(vectors: Floats, least: float) -> Floats:
-    """Those that are longer than `least`, the shortest first."""
-    length = np.linalg.norm(vectors, axis=1)
-    order = np.argsort(length, kind="stable")
-    return np.asarray(vectors[order[length[order] > least]])
+    """Those that are longer than `least`, with angles in [0, pi): the shortest first, of equals the least angle."""
+    turn = np.arctan2(vectors[:, 1], vectors[:, 0])
+    upward = np.where(((turn < -_TIE) | (turn > np.pi - _TIE))[:, None], -vectors, vectors)
+    length, angle = np.linalg.norm(upward, axis=1), np.arctan2(upward[:, 1], upward[:, 0])
+    order = np.lexsort((angle, np.round(length / (_TIE * length.max(initial=least)))))
+    return np.asarray(upward[order[length[order] > least]])
+
+
+def _nearest(x: Floats) -> Floats:
+    """The nearest integers, of two equally near the lower one."""
+    return np.asarray(np.floor(x + (0.5 - _TIE)))
 
 
 def _unfolded(atlas: Atlas) -> tuple[Floats, Floats]:

@@ -1,7 +1,7 @@
 """The public names of orbiframe.triangulations, each with the module it lives in."""
 
 from .geodesic_triangulation import GeodesicTriangulation as GeodesicTriangulation
-from .girth import Girth as Girth, girth as girth, site_density as site_density, site_lengths as site_lengths
+from .local_girth import Girth as Girth, girth as girth, site_density as site_density, site_lengths as site_lengths
 from .lost_digits import crowding_of as crowding_of
 from .point_location import Location as Location, Locator as Locator
 from .triangulation import Triangulation as Triangulation

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from orbiframe import Orbifold, Triangulation, UsageError
+from orbiframe import Orbifold, Triangulation
 from orbiframe.delaunay import domain_for
 from orbiframe.splines import ElementBasis, Unknowns, VertexJets, along_reference, shaped_triangles
 from orbiframe.triangulations import GeodesicTriangulation
+from orbiframe_bases.degrees import require_degree
 from orbiframe_bases.hermite import neighbours, normal_coordinates
 from orbiframe_bases.unsplit import Corners, unknown_counts, unsplit_nets
 
@@ -44,8 +45,7 @@ class Unsplit(ElementBasis):
         degree: int,
     ) -> None:
         least = 4 * self.continuity + 1
-        if degree < least:
-            raise UsageError(f"option degree of the basis {self.name} is {degree}; it must be at least {least}")
+        require_degree(self.name, degree, least)
         counts = unknown_counts(degree, self.continuity)
         domain = domain_for(orbifold, triangulation, size, counts)
         matrix = _matrix(degree, self.continuity, Unknowns(domain, *counts))

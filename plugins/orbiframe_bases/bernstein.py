@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from orbiframe import Orbifold, Triangulation, UsageError
+from orbiframe import Orbifold, Triangulation
 from orbiframe.delaunay import domain_for
 from orbiframe.splines import ElementBasis, along_reference, exponents
 from orbiframe.triangulations import GeodesicTriangulation
+from orbiframe_bases.degrees import require_degree
 
 Ints = NDArray[np.intp]
 
@@ -32,8 +33,7 @@ class Bernstein(ElementBasis):
         size: int = 1000,
         degree: int = 4,
     ) -> None:
-        if degree < 1:
-            raise UsageError(f"option degree of the basis bernstein is {degree}; it must be at least 1")
+        require_degree("bernstein", degree, 1)
         domain = domain_for(orbifold, triangulation, size, (1, degree - 1, (degree - 1) * (degree - 2) // 2))
         number, count = shared_numbers(domain, degree)
         rows = number.size

@@ -12,9 +12,13 @@ from orbiframe.delaunay import domain_for
 from orbiframe.splines import exponents
 from orbiframe.triangulations import GeodesicTriangulation
 from orbiframe_bases.bernstein import shared_numbers
+from orbiframe_bases.degrees import require_degree
 from orbiframe_bases.knot_clouds import flatness, knot_clouds
 from orbiframe_bases.simplex_program import cloud_program
 from orbiframe_bases.simplex_splines import KnotSets, SimplexSplines
+
+# Knots by the hundred round every triangle: time grows like the fourth power.
+MOST_DEGREE = 10
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -47,11 +51,9 @@ class DMS(SimplexSplines):
         condensed: bool = True,
         radius: float = 0.2,
     ) -> None:
-        if degree < 1 or not 0 < radius <= 0.3:
-            raise UsageError(
-                f"dms has degree {degree} and radius {radius}; the degree must be at least 1, the radius positive and "
-                "at most 0.3"
-            )
+        require_degree("dms", degree, 1, MOST_DEGREE)
+        if not 0 < radius <= 0.3:
+            raise UsageError(f"dms has the radius {radius}; it must be positive and at most 0.3")
         count = (degree + 1) * (degree + 2) // 2
         inside = (degree - 1) * (degree - 2) // 2
         unknowns = (1, degree - 1, inside) if condensed else (0, 0, count)

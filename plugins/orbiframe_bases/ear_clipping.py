@@ -6,6 +6,9 @@ import numpy as np
 
 from orbiframe.compiled import compiled
 
+# Ears whose shapes differ by less are alike, and the first of them goes: rounding must not decide.
+_SAME_SHAPE = 1e-9
+
 
 @compiled
 def _area(a, b, c):  # type: ignore[no-untyped-def]
@@ -48,7 +51,7 @@ def clip_ears(points):  # type: ignore[no-untyped-def]
         best, where = -np.inf, 0
         for k in range(count):
             shape = _ear(points, corner[(k - 1) % count], corner[k], corner[(k + 1) % count], count, corner)
-            if shape > best:
+            if shape > best + _SAME_SHAPE:
                 best, where = shape, k
         triangles[n, 0], triangles[n, 1] = corner[(where - 1) % count], corner[where]
         triangles[n, 2] = corner[(where + 1) % count]

@@ -16,6 +16,8 @@ Ints = NDArray[np.intp]
 
 # Overlaps narrower than this are no overlaps, and lifts nearer than this are one.
 _NARROW, _SAME_PLACE = 1e-12, 1e-6
+# Knots must lie this far above a plane through the origin.
+_LEAST_HEIGHT = 1e-6
 
 
 class Reach(NamedTuple):
@@ -33,17 +35,9 @@ class Reach(NamedTuple):
 def hull_bounds(domain: GeodesicTriangulation, knots: Floats) -> Floats:
     """Linear functions, (E, b, 3), not negative exactly on the cone of every set of knots (E, K, 3): its sides.
 
-    Cones with fewer sides than b have some repeated. Raises FitError where knots lie in no open half-space about their
-    mean: on a sphere with few triangles.
+    Cones with fewer sides than b have some repeated. Raises FitError where knots lie in no open half-space: on a sphere
+    with few triangles.
     """
-    geometry = domain.geometry
-    mean = geometry.project(knots.sum(axis=1))
-    heights = np.einsum("ei,eki->ek", mean * [1.0, geometry.curvature, geometry.curvature], knots)
-    if not (heights > 1e-6).all():
-        raise FitError(
-            f"the knots of simplex spline {np.argwhere(~(heights > 1e-6))[0, 0]} lie in no half-space; the "
-            "triangles are too large for the sphere: take more of them (option size)"
-        )
     first, second = np.array(list(combinations(range(knots.shape[1]), 2))).T
     p, q = knots[:, first], knots[:, second]
     normal = np.cross(p, q - p)
@@ -53,9 +47,27 @@ def hull_bounds(domain: GeodesicTriangulation, knots: Floats) -> Floats:
     left, right = (inside >= -_NARROW).all(axis=2), (inside <= _NARROW).all(axis=2)
     is_side = (left ^ right) & (size[..., 0] > 0)
     normal = np.where(left[..., None], normal, -normal)
+    _require_half_spaces(domain, knots, np.where(is_side[..., None], normal, 0.0).sum(axis=1))
     order = np.argsort(~is_side, axis=1, kind="stable")[:, : is_side.sum(axis=1).max()]
     order = np.where(np.take_along_axis(is_side, order, axis=1), order, order[:, :1])
     return np.take_along_axis(normal, order[..., None], axis=1)
+
+
+def _require_half_spaces(domain: GeodesicTriangulation, knots: Floats, inward: Floats) -> None:
+    """Raise FitError unless the knots (E, K, 3) have a plane through the origin below them.
+
+    inward: (E, 3), the sums of the inner normals of the sides of their cones. A cone that holds no line has its apex
+    alone on all sides, so it lies above the plane of that sum; flat ones without sides lie above that of their mean.
+    """
+    curvature = domain.geometry.curvature
+    mean = domain.geometry.project(knots.sum(axis=1)) * [1.0, curvature, curvature]
+    above = [np.einsum("ei,eki->ek", n, knots).min(axis=1) > _LEAST_HEIGHT for n in (mean, inward)]
+    wide = np.flatnonzero(~(above[0] | above[1]))
+    if len(wide):
+        raise FitError(
+            f"the knots of simplex spline {wide[0]} lie in no half-space; the triangles are too large for the sphere: "
+            "take more of them (option size)"
+        )
 
 
 def reach(locator: Locator, face: Ints, knots: Floats, bounds: Floats) -> Reach:

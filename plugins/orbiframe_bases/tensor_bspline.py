@@ -13,6 +13,7 @@ from orbiframe import GeometryError, Orbifold, Points, Triangulation, UsageError
 from orbiframe.orbifolds import FlatLattice
 from orbiframe.splines import TensorBasis
 from orbiframe.triangulations import GeodesicTriangulation
+from orbiframe_bases.degrees import require_degree
 from orbiframe_bases.periodic_bsplines import PeriodicBSplines
 
 Floats = NDArray[np.float64]
@@ -53,8 +54,9 @@ class TensorBSpline(TensorBasis):
         knots_u: Sequence[float] | None = None,
         knots_v: Sequence[float] | None = None,
     ) -> None:
-        if degree < 1 or size < 1:
-            raise UsageError(f"tensor-bspline has degree {degree} and size {size}; both must be at least 1")
+        require_degree("tensor-bspline", degree, 1)
+        if size < 1:
+            raise UsageError(f"tensor-bspline has the size {size}; it must be at least 1")
         _require_flat(orbifold)
         self.orbifold, self.degree = orbifold, degree
         self.lattice = FlatLattice.of(orbifold)

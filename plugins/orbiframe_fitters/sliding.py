@@ -25,6 +25,8 @@ _KIND = np.array([[0, 1, 2], [1, 3, 4], [2, 4, 5]])
 # A foot moves at most so many lengths of fairness in one step, and the surface is stretched at most so much in fairing.
 _LONGEST_STEP = 0.3
 _MOST_STRETCH = 30.0
+# A step that leaves more than this share of the distance is the last one.
+_GAIN = 0.97
 
 
 class Schedule(NamedTuple):
@@ -37,7 +39,7 @@ class Schedule(NamedTuple):
 
 # By the order of the energy; each entry holds until the next, the last one for all further steps.
 _SCHEDULES = {
-    2: (Schedule(1e-4, 1e-2, 1e-3),),
+    2: (Schedule(1e-4, 1e-2, 1e-3), Schedule(1e-4, 5e-3, 1e-3)),
     3: (Schedule(1e-4, 1e-3, 0.0), Schedule(1e-6, 1e-4, 0.0)),
 }
 
@@ -157,7 +159,7 @@ class _Slide:
             else:
                 return coefficients
             coefficients, feet = trial, there
-            if distance > 0.95 * before and step >= len(self.schedules) - 1:
+            if distance > _GAIN * before and step >= len(self.schedules) - 1:
                 break
         return coefficients
 
@@ -179,15 +181,17 @@ class _Slide:
 
     def _slid_part(self, feet: _Feet, part: Samples, longest: Floats, coefficients: Floats) -> _Feet:
         step = foot_step(feet.jets, part.values, longest)
-        trial = self._feet(moved(self.basis.orbifold, feet.points, step), part.values, coefficients)
-        worse = np.flatnonzero(~(trial.distance < feet.distance))
-        if not len(worse):
-            return trial
-        back = feet.take(worse)
-        points = moved(self.basis.orbifold, back.points, step[worse] / 4)
-        again = self._feet(points, part.values[worse], coefficients)
-        still = np.flatnonzero(~(again.distance < back.distance))
-        return trial.replaced(worse, again.replaced(still, back.take(still)))
+        found = self._feet(moved(self.basis.orbifold, feet.points, step), part.values, coefficients)
+        for share in (1.0, 0.25):
+            worse = np.flatnonzero(~(found.distance < feet.distance))
+            if not len(worse):
+                return found
+            back = feet.take(worse)
+            step = share * foot_step(back.jets, part.values[worse], longest[worse], bent=False)
+            again = self._feet(moved(self.basis.orbifold, back.points, step), part.values[worse], coefficients)
+            found = found.replaced(worse, again)
+        worse = np.flatnonzero(~(found.distance < feet.distance))
+        return found.replaced(worse, feet.take(worse))
 
     def _change(self, feet: list[_Feet], coefficients: Floats, schedule: Schedule) -> Floats:
         """The change of the coefficients by one step of Gauss and Newton."""

@@ -59,8 +59,8 @@ def save(path: Path, polyhedron: Polyhedron) -> None:
     """Write a file and read it again. Raises FormatError where that is not the same polyhedron."""
     if path.suffix.lower() not in POLYGONAL and polyhedron.face_sizes.max(initial=0) > 4:
         raise FormatError(
-            f"{path}: this format holds triangles and quads only, but a face has "
-            f"{polyhedron.face_sizes.max()} corners; write OFF, OBJ, PLY or VTU, or use convert --triangulate"
+            f"{path}: this format holds triangles and quads only, but one has {polyhedron.face_sizes.max()} corners; "
+            "write OFF, OBJ, PLY or VTU, or use convert --triangulate"
         )
     blocks = list(_blocks(polyhedron))
     dialect = DIALECTS.get(path.suffix.lower())
@@ -157,7 +157,7 @@ def _strict(path: Path) -> Iterator[None]:
 
 def _reason(printed: str, error: BaseException) -> str:
     """What meshio says for people, in print or by an error of its own; nothing of bare errors of Python."""
-    own = (meshio.ReadError, meshio.WriteError, FormatError, EOFError, MemoryError, OSError)
+    own = (meshio.ReadError, meshio.WriteError, FormatError, EOFError, MemoryError, RuntimeError)
     said = _brief(printed) or (_brief(str(error)) or type(error).__name__ if isinstance(error, own) else "")
     return f": {said}" if said else "; is it damaged, or of another format?"
 

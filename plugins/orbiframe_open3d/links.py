@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import struct
-from itertools import chain
 from pathlib import Path
+from typing import Any
 
 from orbiframe import FormatError
 
@@ -16,13 +16,10 @@ PICTURES = (b"RelativeFilename", b"FileName", b"Filename")
 
 
 def require_own_files(path: Path) -> None:
-    """Raise FormatError for a file that names others, but for the buffers of a .gltf, which are half of that format.
-
-    Those must be files beside it, and no links.
-    """
+    """Raise FormatError for a file that names others. A .gltf may always do so; the reader gltf reads it."""
     content, suffix = path.read_bytes(), path.suffix.lower()
     if suffix == ".gltf":
-        _require_near(path, content)
+        raise FormatError(f"{path}: a .gltf may name other files, so Open3D does not read it; leave the format away")
     if suffix == ".glb":
         _require_none(path, _text_of(path, content))
     if suffix == ".fbx" and any(name in content for name in PICTURES):
@@ -45,26 +42,21 @@ def _text_of(path: Path, content: bytes) -> bytes:
     return content[START.size : START.size + length]
 
 
-def _require_near(path: Path, text: bytes) -> None:
-    buffers, images = _names(path, text)
-    for name in buffers:
-        if Path(name).name != name or ":" in name or "%" in name or (path.parent / name).is_symlink():
-            raise FormatError(f"{path}: the file names {name[:80]!r}; only buffers in its own folder are opened")
-    for name in images:
-        raise FormatError(f"{path}: the file names the picture {name[:80]!r}, which is not opened; save it as .glb")
-
-
 def _require_none(path: Path, text: bytes) -> None:
-    for name in chain(*_names(path, text)):
-        raise FormatError(f"{path}: the file names {name[:80]!r}, which is not opened; save it with all in one file")
+    """Raise FormatError where any object of the JSON has an address of a file, or one key twice."""
 
+    def look(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        found = dict(pairs)
+        if len(found) < len(pairs):
+            raise ValueError("a key stands twice in one object")
+        uri = found.get("uri", "data:")
+        if not isinstance(uri, str) or not uri.startswith("data:"):
+            raise FormatError(f"{path}: the file names {uri!r:.80}, which is not opened; save it with all in one file")
+        return found
 
-def _names(path: Path, text: bytes) -> tuple[list[str], list[str]]:
-    """The files that a glTF names as buffers and as pictures."""
     try:
-        tree = json.loads(text)
-        found = [[str(p["uri"]) for p in tree.get(key, []) if "uri" in p] for key in ("buffers", "images")]
-    except (ValueError, TypeError, AttributeError, RecursionError) as error:
+        tree = json.loads(text.decode("utf-8"), object_pairs_hook=look)
+    except (ValueError, RecursionError) as error:
         raise FormatError(f"{path}: this is no glTF: {error}") from error
-    buffers, images = ([name for name in names if not name.startswith("data:")] for names in found)
-    return buffers, images
+    if not isinstance(tree, dict):
+        raise FormatError(f"{path}: this is no glTF: an object is required")

@@ -7,7 +7,7 @@ from pathlib import Path
 from orbiframe import Polyhedron
 from orbiframe.files import confined_read
 
-# Open3D is loaded inside the limit and takes address space for its threads.
+# Open3D takes address space for its threads.
 MEMORY = 2**33
 
 

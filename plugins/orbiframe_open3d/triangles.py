@@ -56,12 +56,23 @@ def save(path: Path, polyhedron: Polyhedron) -> None:
 
 
 def _open3d() -> Any:
+    if isinstance(_LOADED, ModuleNotFoundError):
+        raise PluginError('this format needs the package open3d: pip install "orbiframe[open3d]"') from _LOADED
+    if isinstance(_LOADED, Exception):
+        raise PluginError(
+            f"open3d cannot be loaded ({_LOADED}); it needs system libraries: on Debian, {SYSTEM}"
+        ) from _LOADED
+    return _LOADED
+
+
+def _loaded() -> Any:
+    """Open3D, or the reason why it cannot be loaded."""
     try:
         import open3d
-    except ModuleNotFoundError as error:
-        raise PluginError('this format needs the package open3d: pip install "orbiframe[open3d]"') from error
     except (ImportError, OSError) as error:
-        raise PluginError(
-            f"open3d cannot be loaded ({error}); it needs system libraries: on Debian, {SYSTEM}"
-        ) from error
+        return error
     return open3d
+
+
+# Loaded with this module, before the process is confined: Open3D looks at files of its own.
+_LOADED = _loaded()

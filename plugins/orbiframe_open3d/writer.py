@@ -10,7 +10,7 @@ import numpy as np
 from orbiframe import FormatError, Polyhedron
 from orbiframe.files import confined_write
 
-# Open3D is loaded inside the limit and takes address space for its threads.
+# Open3D takes address space for its threads.
 MEMORY = 2**33
 
 

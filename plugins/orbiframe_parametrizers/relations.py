@@ -28,17 +28,20 @@ def with_relations(geometry: Geometry, transition: Ints, isometry: Floats) -> Fl
     transition: (H,), three for each triangle; isometries come in pairs of inverses 2k + 1, 2k + 2 after the identity.
     Each free one is multiplied by exp(xi); the relations are linear in xi up to second order, and the least xi is
     found, again as long as the defect falls (Gauss-Newton) and is more than rounding. Turning and moving the frame of
-    a patch breaks no relation, and the least xi does neither.
+    a patch breaks no relation, and the least xi does neither. Matrices that are off the group are made isometries
+    first: no xi mends that, and the first defect would hide what the round gained.
     """
     relations = _distinct_relations(transition)
     if not len(relations):
         return isometry
-    best, defect = isometry, _defect(isometry, relations)
-    solve = None
+    best, solve = isometry, None
+    if geometry.isometry_defect(isometry).max() > _ROUNDED:
+        best = _moved(geometry, isometry, np.zeros(3 * (len(isometry) // 2)))
+    defect = _defect(best, relations)
     for _ in range(_ROUNDS):
         if defect <= _ROUNDED:
             break
-        solve = solve or _least_squares(_linearised(geometry, relations, isometry))
+        solve = solve or _least_squares(_linearised(geometry, relations, best))
         trial = _moved(geometry, best, solve(-_residual(best, relations)))
         new = _defect(trial, relations)
         if not new < defect:

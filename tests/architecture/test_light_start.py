@@ -35,7 +35,7 @@ def loaded_by(*arguments: str) -> tuple[int, set[str]]:
         ["plugins"],
         ["plugins", "--json"],
         ["plugins", "--kind", "basis"],
-        *([command, "--help"] for command in ("fit", "info", "convert", "plugins")),
+        *([command, "--help"] for command in ("fit", "info", "convert", "plugins", "warm-up")),
     ],
     ids=" ".join,
 )

@@ -1,14 +1,11 @@
 from __future__ import annotations
 
-import io
 import json
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
 from orbiframe import MapError
-from orbiframe.cli.progress import Progress
 from orbiframe.cli.report import json_text, summary, write_report
 from orbiframe.fitting import pipeline
 
@@ -143,20 +140,6 @@ def test_a_mesh_with_a_hole_is_refused_in_one_sentence(orbiframe, cube, tmp_path
     assert "4 open edges" in ran.err
     assert len(ran.err.splitlines()) == 1
     assert not (tmp_path / "a.ply").exists()
-
-
-def test_progress_is_shown_on_a_terminal_only():
-    terminal = SimpleNamespace(isatty=lambda: True, flush=lambda: None, text=[])
-    terminal.write = terminal.text.append
-    progress = Progress(terminal)
-    progress("map", None)
-    progress("map", 1.25)
-    assert "".join(terminal.text).replace("\r", "\n").splitlines() == ["map …", "map                1.25 s"]
-    for silent in (Progress(file := io.StringIO()), Progress(terminal, quiet=True)):
-        terminal.text.clear()
-        silent("map", None)
-        silent("map", 1.0)
-        assert (file.getvalue(), terminal.text) == ("", [])
 
 
 DATASETS = Path(__file__).parents[2] / "datasets"

@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
+import threading
+import time
+
 import numpy as np
 import pytest
+from numba.core.compiler_lock import global_compiler_lock
 
-from orbiframe.compiled import compiled
+from orbiframe.compiled import code_folders, compiled
+from orbiframe.compiled.code_folders import CodeFolder
+
+
+@pytest.fixture(autouse=True)
+def nothing_kept(tmp_path, monkeypatch):
+    """Everything is compiled in every test."""
+    monkeypatch.setattr(code_folders, "code_folders", lambda source: [CodeFolder(tmp_path, True, True)])
 
 
 @compiled
@@ -46,6 +57,27 @@ def test_a_function_that_compiled_code_called_first_can_be_called_from_python():
     assert len(_inside.signatures) == 1
     assert _outside(0.5) == 3.0
     assert _inside(0.5) == 1.5
+
+
+@compiled
+def _waited_for(x):  # type: ignore[no-untyped-def]
+    return x + 2
+
+
+@compiled
+def _compiled_meanwhile(x):  # type: ignore[no-untyped-def]
+    return _waited_for(x)
+
+
+def test_a_thread_that_waits_for_the_compiler_gets_a_version_that_python_can_call():
+    found: list[int] = []
+    with global_compiler_lock:
+        thread = threading.Thread(target=lambda: found.append(_waited_for(1)))
+        thread.start()
+        time.sleep(0.2)
+        assert _compiled_meanwhile(1) == 3
+    thread.join()
+    assert found == [3]
 
 
 @compiled

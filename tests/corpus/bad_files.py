@@ -18,12 +18,13 @@ from corpus.off_files import off
 from corpus.other_files import other
 from corpus.ply_binary_files import ply_binary
 from corpus.ply_text_files import ply_text
+from corpus.scene_files import scenes
 from corpus.stl_files import stl_binary, stl_text
 
 
 def cases() -> Iterator[Case]:
     """All files, each name once."""
-    for maker in (off, obj, ply_text, ply_binary, stl_text, stl_binary, other):
+    for maker in (off, obj, ply_text, ply_binary, stl_text, stl_binary, scenes, other):
         for name, content, answer in maker():
             data = content.encode() if isinstance(content, str) else content
             stem, _, suffix = name.rpartition(".")

@@ -21,6 +21,12 @@ def obj() -> Rows:
 
 OBJ_READABLE: list[tuple[str, str | bytes, Mesh | str]] = [
     ("plain", OBJ, GOOD),
+    ("normals named, but none there", OBJ.replace("f 1 3 2", "f 1//1 3//1 2//1"), GOOD),
+    (
+        "all normals named, but none there",
+        V + "".join("f " + " ".join(f"{w}//{w}" for w in line.split()[1:]) + "\n" for line in F.splitlines()),
+        GOOD,
+    ),
     ("crlf", OBJ.replace("\n", "\r\n"), GOOD),
     ("cr", OBJ.replace("\n", "\r"), GOOD),
     ("byte order mark", "\ufeff" + OBJ, GOOD),

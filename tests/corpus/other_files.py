@@ -7,6 +7,6 @@ from corpus.off_files import OFF
 
 
 def other() -> Rows:
-    yield "archive.off.gz", b"\x1f\x8b\x08" + b"\0" * 99, "suffix '.gz' is not known"
-    yield "archive.zip", b"PK\x03\x04" + b"\0" * 99, "suffix '.zip' is not known"
+    yield "archive.off.gz", b"\x1f\x8b\x08" + b"\0" * 99, "no sound gzip"
+    yield "archive.zip", b"PK\x03\x04" + b"\0" * 99, "no sound archive"
     yield "no suffix.", OFF, "no suffix|not known"

@@ -47,6 +47,10 @@ STL_READABLE: list[tuple[str, str | bytes, Mesh | str]] = [
         + "endsolid\n",
         STL_GOOD,
     ),
+    ("ends in two words", STL.replace("end", "end ").upper(), STL_GOOD),
+    ("an end in two words", STL.replace("endsolid", "end solid"), STL_GOOD),
+    ("an end with a tabulator", STL.replace("endfacet", "end\tfacet"), STL_GOOD),
+    ("a name of ends", STL.replace(" a b", " end solid"), STL_GOOD),
     ("blank lines", STL.replace("\n", "\n\n"), STL_GOOD),
     ("a word to a line", "solid\n" + "\n".join("".join(map(facet, FACETS)).split()) + "\nendsolid\n", STL_GOOD),
     (

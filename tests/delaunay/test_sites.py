@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from lifted_sites import group_of, random_sites
@@ -114,6 +116,18 @@ def test_the_domain_of_splines_has_as_many_vertices_as_wanted(name):
         assert t.gluing_defect < 1e-8
     assert smallest_angle(t) > 15
     np.testing.assert_array_equal(t.corners, spline_domain(mapped, count).corners)
+
+
+@pytest.mark.parametrize(("name", "times"), [("sphere", 4), ("torus", 3), ("octagon", 3)])
+def test_rounding_does_not_choose_the_triangles_of_a_domain(name, times):
+    """Of a symmetric mesh, where many sites lie on one circle: noise as large as that of another processor."""
+    mapped, rng = triangulated(name, times), np.random.default_rng(0)
+    wanted = spline_domain(mapped, 15)
+    for _ in range(5):
+        noisy = mapped.orbifold.geometry.settle(mapped.points * (1 + 1e-15 * rng.normal(size=mapped.points.shape)))
+        found = spline_domain(replace(mapped, points=noisy), 15)
+        np.testing.assert_array_equal(found.vertex, wanted.vertex)
+        np.testing.assert_allclose(found.edge_lengths, wanted.edge_lengths, atol=1e-10)
 
 
 def test_a_domain_has_no_more_vertices_than_the_mesh():

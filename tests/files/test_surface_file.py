@@ -83,7 +83,7 @@ def test_options_of_the_basis_and_place_in_space_are_kept(tmp_path: Path) -> Non
     save_surface(surface, tmp_path / "s.npz")
     loaded = load_surface(tmp_path / "s.npz", REGISTRY)
     assert_same_bits(surface, loaded)
-    assert loaded.basis_options == {"size": 50, "width": 2.0, "reach": 2.5}
+    assert loaded.basis_options == {"size": 50, "width": 2.0, "reach": 2.5, "grading": 0.3}
 
 
 def test_saving_twice_gives_the_same_arrays_and_replaces_the_file(saved: Path, tmp_path: Path) -> None:

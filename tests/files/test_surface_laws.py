@@ -72,6 +72,11 @@ def swapped(name: str) -> Change:
 # What is changed in a file, the array that is named, and a word of its law; nothing but laws can tell.
 BROKEN = {
     "no patch": (lambda a: a.update(atlas_radius=a["atlas_radius"][:0]), "atlas_radius", "positive"),
+    "a patch without a vertex": (
+        lambda a: a.update(atlas_radius=np.append(a["atlas_radius"], 0.5)),
+        "atlas_radius",
+        "holds a vertex",
+    ),
     "a radius without end": (scaled("atlas_radius", 1e6), "atlas_radius", "reach as far"),
     "a radius too small": (scaled("atlas_radius", 0.5), "atlas_radius", "hold their triangles"),
     "a radius of nan": (put("atlas_radius", 0, np.nan), "atlas_radius", "positive"),
@@ -127,6 +132,19 @@ def test_every_law_is_named_with_its_array(saved: Path, tmp_path: Path, name: st
 
     with pytest.raises(FormatError, match=rf"bad\.npz: the array '{array}' breaks a law: .*({law})"):
         load_surface(changed(saved, tmp_path / "bad.npz", all_changes), REGISTRY)
+
+
+def test_bytes_in_the_other_order_are_turned(saved: Path, tmp_path: Path) -> None:
+    def change(arrays: dict[str, np.ndarray]) -> None:
+        for name in ("fine_twin", "points", "coefficients", "atlas_isometry"):
+            arrays[name] = arrays[name].astype(arrays[name].dtype.newbyteorder())
+
+    turned, plain = (
+        load_surface(changed(saved, tmp_path / "turned.npz", change), REGISTRY),
+        load_surface(saved, REGISTRY),
+    )
+    np.testing.assert_array_equal(turned.tessellate(2).vertices, plain.tessellate(2).vertices)
+    assert turned.triangulation.polyhedron.twin.dtype.isnative
 
 
 # ---- words ----------------------------------------------------------------------------------------------------------

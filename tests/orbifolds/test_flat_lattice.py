@@ -104,6 +104,17 @@ def test_the_shortest_vectors_are_found_among_many() -> None:
             assert abs(np.linalg.det(found)) == pytest.approx(abs(np.linalg.det(basis)) * abs(index))
 
 
+@pytest.mark.parametrize("degrees", [60, 75, 90])
+def test_rounding_does_not_choose_among_vectors_of_one_length(degrees: float) -> None:
+    """Rhombic lattices, the hexagonal and the square one among them: generators of any sign with noise, one basis."""
+    short = np.array([[1.0, 0.0], [np.cos(np.radians(degrees)), np.sin(np.radians(degrees))]])
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        combinations = rng.permutation([[1, 0], [0, 1], [1, 1], [-1, 1], [2, 1]]) * rng.choice([-1, 1], (5, 1))
+        vectors = combinations @ short + rng.normal(size=(5, 2)) * 1e-15
+        np.testing.assert_allclose(reduced_basis(vectors, 1e-9), short.T, atol=1e-13)
+
+
 def _pairs(rows: np.ndarray) -> list[np.ndarray]:
     return [rows[[i, j]] for i in range(len(rows)) for j in range(i)]
 

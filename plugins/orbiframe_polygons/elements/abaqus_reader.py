@@ -207,8 +207,8 @@ class _Model:
         if card.parameters.get("SYSTEM", "R").upper() != "R":
             self._refuse(card, f"nodes with SYSTEM={card.parameters['SYSTEM'][:20]} are not read; write X, Y, Z")
         text = self._table(card)
-        if ((text.words < 2) | (text.words > 7)).any():
-            row = int(((text.words < 2) | (text.words > 7)).argmax())
+        if (text.words > 7).any():
+            row = int((text.words > 7).argmax())
             text.refuse(row, f"found {text.words[row]} numbers, but a node has its number and three coordinates")
         values, first = text.numbers(), text.first
         numbers = whole(values[first], lambda row: f"{self.path}, line {text.number[row]}")

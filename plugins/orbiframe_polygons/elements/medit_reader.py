@@ -42,6 +42,8 @@ CODES = {
     20: "NormalAtVertices", 21: "NormalAtTriangleVertices", 22: "NormalAtQuadrilateralVertices", 49: "Pyramids",
     54: "End", 58: "Tangents", 59: "TangentAtVertices", 60: "Normals",
 }  # fmt: skip
+# Keywords with one number after them.
+SINGLE = {"MeshVersionFormatted", "Dimension", "AngleOfCornerBound"}
 NOT_KNOWN = "this keyword is not known, or changes what others mean; it is not read"
 
 
@@ -82,7 +84,7 @@ def _polyhedron(path: Path, sections: Iterator[Section]) -> Polyhedron:
             points = section.rows[:, :-1].astype(np.float64)
             block.add_nodes(np.arange(1, len(points) + 1), np.pad(points, ((0, 0), (0, 3 - points.shape[1]))))
         elif section.name in FACES:
-            rows = whole(section.rows, section.place_of)
+            rows = whole(section.rows.ravel(), section.place_of).reshape(section.rows.shape)
             # The elements have no numbers; faces of different kinds must not seem to be one.
             names = np.arange(len(rows)) + (2**40 if section.name == "Quadrilaterals" else 0)
             block.add_faces(names, rows[:, :-1])
@@ -121,21 +123,22 @@ def _text(path: Path, text: bytes) -> Iterator[Section]:
         found = word[0].decode("ascii", errors="replace")
         name, place = names.get(found.lower(), found), f"{path}, line {line}"
         stop = words[k + 1].start() if k + 1 < len(words) else len(text)
+        width = _width(name, dimension)
+        if width is None and name not in SINGLE and name != "End":
+            raise FormatError(f"{place}: {found[:40]}: {NOT_KNOWN}")
         values = table(path, text[word.end() : stop], line=line).numbers()
         if name == "End":
             if len(values) or k + 1 < len(words):
                 raise FormatError(f"{place}: the file goes on after End")
             return
-        if name in ("MeshVersionFormatted", "Dimension", "AngleOfCornerBound"):
+        if width is None:
             dimension = _single(place, name, values, dimension)
             continue
-        width = _width(name, dimension)
-        if width is None:
-            raise FormatError(f"{place}: {found[:40]}: {NOT_KNOWN}")
         if not len(values) or (len(values) - 1) != values[0] * width:
+            following = (text[stop:].split(None, 1) or [b"nothing"])[0]
             raise FormatError(
-                f"{place}: {name} says {values[0] if len(values) else 'no'} rows of {width} numbers, but "
-                f"{max(0, len(values) - 1)} numbers follow; is the file cut short?"
+                f"{place}: {name} says {f'{values[0]:g}' if len(values) else 'no'} rows of {width} numbers, but "
+                f"{max(0, len(values) - 1)} numbers follow, then {shown(following)}; is the file cut short?"
             )
         yield Section(name, place, values[1:].reshape(-1, width))
     raise FormatError(

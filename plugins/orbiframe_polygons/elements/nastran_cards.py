@@ -5,6 +5,7 @@ Source: MSC Nastran Quick Reference Guide, "Bulk Data Entries".
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,8 +15,8 @@ from typing import NoReturn
 from orbiframe import FormatError
 from orbiframe_polygons.text import shown
 
-REAL = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[dDeE]([+-]?\d+)|([+-]\d+))?")
-INTEGER = re.compile(r"[+-]?\d{1,15}")
+REAL = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[dDeE]([+-]?\d+)|([+-]\d+))?", re.ASCII)
+INTEGER = re.compile(r"[+-]?\d{1,15}", re.ASCII)
 BULK = re.compile(r"BEGIN\s+BULK\b(.*)", re.IGNORECASE)
 INCLUDE = re.compile(r"\s*INCLUDE\b", re.IGNORECASE)
 # Columns of a line: the name, then fields of eight, or of sixteen.
@@ -49,7 +50,10 @@ class Card:
         found = REAL.fullmatch(word)
         if found is None:
             self.refuse(f"found {shown(word.encode())} in field {field + 1}, but a number is required")
-        return float(f"{found[1]}e{found[2] or found[3] or 0}")
+        value = float(f"{found[1]}e{found[2] or found[3] or 0}")
+        if not math.isfinite(value):
+            self.refuse(f"found {shown(word.encode())} in field {field + 1}, but a finite number is required")
+        return value
 
     def refuse(self, complaint: str) -> NoReturn:
         """Raise FormatError with the line and the name."""

@@ -24,6 +24,8 @@ PACKINGS = {"FEPOINT": "POINT", "FEBLOCK": "BLOCK"}
 # Words of a zone that leave the mesh as it is.
 HARMLESS = {"T", "DT", "C", "STRANDID", "SOLUTIONTIME", "PARENTZONE", "AUXDATA", "VARLOCATION"}
 KNOWN = {"N", "NODES", "E", "ELEMENTS", "F", "ET", "DATAPACKING", "ZONETYPE"}
+# Records beside zones.
+RECORDS = {"GEOMETRY", "TEXT", "CUSTOMLABELS"}
 SKIPPED = ("DATASETAUXDATA", "VARAUXDATA", "FILETYPE")
 
 
@@ -52,8 +54,7 @@ def read(path: Path) -> Polyhedron:
     asked = int(widths.sum()) + size * elements
     if len(values) != asked:
         raise FormatError(
-            f"{path}: the zone asks for {asked} numbers, but {len(values)} follow; is it cut short, or has it two "
-            "zones?"
+            f"{path}: the zone asks for {asked} numbers, but {len(values)} follow; is it cut short, or two zones?"
         )
     points = _points(head, values, widths, axes, nodes)
     tail = corners(values[len(values) - size * elements :] - 1, np.full(elements, size), nodes, lambda _: str(path))
@@ -73,6 +74,8 @@ def _head(text: Text) -> tuple[int, _Head]:
         at, word = words[k]
         name = word.upper()
         value = words[k + 2][1] if k + 2 < len(words) and words[k + 1][1] == "=" else None
+        if name in RECORDS and value is None:
+            text.refuse(at, f"found {shown(word.encode())}, which is not read; save the zone alone")
         if name in ("TITLE", *SKIPPED) and (value is not None or name in SKIPPED):
             place = ""
             k += 3 if value is not None else 4
@@ -97,10 +100,15 @@ def _head(text: Text) -> tuple[int, _Head]:
 
 def _set(text: Text, at: int, head: _Head, name: str, value: str) -> None:
     if name in head.zone:
-        text.refuse(at, f"{name} stands twice in the zone")
+        text.refuse(at, f"{_plain(name)} stands twice in the zone")
     if name not in HARMLESS | KNOWN:
-        text.refuse(at, f"{name[:40]} is not known, or changes what others mean; it is not read")
+        text.refuse(at, f"{_plain(name)} is not known, or changes what others mean; it is not read")
     head.zone[name] = value.strip('"').upper()
+
+
+def _plain(name: str) -> str:
+    """A name of a file as it may stand in a sentence."""
+    return name if name.isalnum() and len(name) < 40 else shown(name.encode())
 
 
 def _meant(text: Text, head: _Head) -> tuple[list[int], int, int, int]:
@@ -138,8 +146,8 @@ def _widths(text: Text, head: _Head, nodes: int, elements: int) -> Ints:
     widths = np.full(len(head.variables), nodes, dtype=object)
     location = head.zone.get("VARLOCATION", "")
     if _packing(text, head) == "BLOCK":
-        for listed, kind in re.findall(r"\[([\d,\s-]+)\]\s*\)?\s*=\s*\(?(\w+)", location):
-            for first, last in re.findall(r"(\d{1,6})\s*(?:-\s*(\d{1,6}))?", listed):
+        for listed, kind in re.findall(r"\[([0-9,\s-]+)\]\s*\)?\s*=\s*\(?(\w+)", location):
+            for first, last in re.findall(r"([0-9]{1,6})\s*(?:-\s*([0-9]{1,6}))?", listed):
                 if kind == "CELLCENTERED":
                     widths[int(first) - 1 : int(last or first)] = elements
     elif "CELLCENTERED" in location:

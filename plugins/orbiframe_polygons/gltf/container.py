@@ -99,7 +99,7 @@ def _embedded(node: Node, uri: str) -> bytes:
 
 def _beside(node: Node, uri: str, size: int) -> bytes:
     """The bytes of a file in the same folder, which is half of this format; a link is not followed."""
-    name = unquote(uri, errors="strict") if uri.isascii() else uri
+    name = unquote(uri)
     if not name or name.startswith((".", "~")) or FORBIDDEN & set(name):
         node.refuse(f"names {uri[:80]!r}; only buffers in its own folder are opened")
     place = node.path.parent / name
@@ -109,7 +109,8 @@ def _beside(node: Node, uri: str, size: int) -> bytes:
         link = place.is_symlink()
         reason = "is a link, which is not followed" if link else f"cannot be opened: {getattr(error, 'strerror', '')}"
         node.refuse(f"the buffer {name[:80]!r} in its own folder {reason}")
+    if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+        os.close(descriptor)
+        node.refuse(f"names {name[:80]!r}, which is no regular file")
     with open(descriptor, "rb") as file:
-        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-            node.refuse(f"names {name[:80]!r}, which is no regular file")
         return file.read(size)

@@ -29,6 +29,7 @@ TYPES = {
 DATASETS = ("POLYDATA", "UNSTRUCTURED_GRID")
 POLYDATA = {"VERTICES": "vertices", "LINES": "lines", "POLYGONS": "", "TRIANGLE_STRIPS": ""}
 # From here on there is data at points and cells, which is not needed.
+GHOSTS = b"vtkGhostType"
 DATA = ("POINT_DATA", "CELL_DATA")
 
 
@@ -160,6 +161,10 @@ def _cells(source: _Source, dataset: str) -> Cells:
         words = line.split()
         name = words[0].upper()
         if name in DATA:
+            if GHOSTS in source.data[source.at :]:
+                source.refuse(
+                    "some cells or points may be ghosts (vtkGhostType), which is not read; drop the array first"
+                )
             break
         if name in met:
             source.refuse(f"{name} stands twice")

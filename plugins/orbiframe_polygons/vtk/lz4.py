@@ -5,6 +5,7 @@ Source: Y. Collet, LZ4 Block Format Description.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,6 @@ Bytes = NDArray[np.uint8]
 
 # From so many bytes on, a compiled loop gains more time than the import of the compiler takes.
 LARGE = 2**18
-_compiled: list[Any] = []
 
 
 def unpacked(data: bytes, size: int) -> bytes | None:
@@ -25,12 +25,11 @@ def unpacked(data: bytes, size: int) -> bytes | None:
     return out.tobytes() if fill(source, out) else None
 
 
+@cache
 def _fill_compiled() -> Any:
-    if not _compiled:
-        from numba import njit
+    from orbiframe.compiled import compiled
 
-        _compiled.append(njit(cache=True)(_fill))
-    return _compiled[0]
+    return compiled(_fill)
 
 
 def _fill(source: Bytes, out: Bytes) -> bool:

@@ -18,6 +18,8 @@ from orbiframe_polygons.xml_events import parse
 Ints = NDArray[np.intp]
 
 PARTS = ("Points", "Cells", "Verts", "Lines", "Strips", "Polys")
+# Marks of cells that are hidden, or that another piece has too.
+GHOSTS = "vtkGhostType"
 KINDS = ("PolyData", "UnstructuredGrid")
 
 
@@ -74,7 +76,7 @@ class _Tree:
             if "Source" in attributes:
                 self._refuse(line, "the piece stands in another file, which is not opened")
             self.pieces.append(_Piece(attributes, line))
-        elif name == "DataArray" and outer in PARTS and self.pieces:
+        elif name == "DataArray" and self.pieces and (outer in PARTS or attributes.get("Name") == GHOSTS):
             key = (outer, "" if outer == "Points" else attributes.get("Name", ""))
             if key in self.pieces[-1].arrays:
                 self._refuse(line, f"{outer} has a second array {key[1][:40]!r}")
@@ -94,6 +96,11 @@ class _Tree:
 
 
 def _cells(path: Path, kind: str, piece: _Piece, arrays: Arrays) -> Cells:
+    ghosts = piece.arrays.get(("CellData", GHOSTS))
+    if ghosts is not None and arrays.whole(ghosts, None).any():
+        raise FormatError(
+            f"{path}, line {ghosts.line}: some cells are ghosts ({GHOSTS}), which is not read; drop them first"
+        )
     points = _count(path, piece, "NumberOfPoints")
     cells = Cells(path, np.empty((0, 3)))
     if points:

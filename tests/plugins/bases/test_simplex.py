@@ -12,6 +12,7 @@ from orbiframe_geometries.h2 import H2
 from simplex_checks import jump, recursion, reproduction_error, simplex_splines
 
 from orbiframe import FitError, Points, UsageError
+from orbiframe.delaunay import delaunay, lloyd, uniform_points
 from orbiframe.splines import bernstein_values
 from orbiframe.testing import contract_tests
 from orbiframe.triangulations import GeodesicTriangulation
@@ -121,6 +122,19 @@ def test_knots_in_no_half_space_have_no_simplex_spline() -> None:
         Simplex(octahedron.orbifold, octahedron, degree=3)
 
 
+@pytest.mark.parametrize(("degree", "seed"), [(2, 13), (2, 25), (3, 9), (3, 13)])
+def test_knots_need_no_half_space_about_their_mean(degree: int, seed: int) -> None:
+    """Twelve sites on the sphere: some knots lie behind the mean of their spline, and all in some half-space."""
+    octahedron = checks.sphere()
+    domain = lloyd(delaunay(octahedron, uniform_points(octahedron, 12, seed)).triangulation, 3)
+    basis = Simplex(domain.orbifold, domain, degree=degree)
+    knots = basis.knot_sets.knots
+    assert np.einsum("ei,eki->ek", knots.sum(axis=1), knots).min() < 0
+    matrix = basis.design_matrix(_points(domain, 400)).toarray()
+    assert matrix.min() >= 0
+    np.testing.assert_allclose(matrix @ np.linalg.lstsq(matrix, np.ones(400))[0], 1, atol=1e-11)
+
+
 @pytest.mark.parametrize("count", [4, 5, 6, 7])
 def test_derivatives_are_differences(count: int) -> None:
     """D_u M_B = (m - 3) sum mu_b M_(B - b), to third order, by differences of the jets of one order less."""
@@ -221,6 +235,14 @@ def test_ears_fill_the_polygon(seed: int) -> None:
         areas = _areas(polygon[t])
         assert areas.sum() == pytest.approx(_shoelace(polygon))
         assert not simple or (areas > 0).all()
+
+
+def test_rounding_does_not_choose_among_ears() -> None:
+    """All ears of a regular polygon are alike."""
+    angle = 2 * np.pi * np.arange(9) / 9
+    polygon, rng = np.stack([np.cos(angle), np.sin(angle)], axis=1), np.random.default_rng(0)
+    for _ in range(10):
+        np.testing.assert_array_equal(clip_ears(polygon + 1e-15 * rng.normal(size=polygon.shape)), clip_ears(polygon))
 
 
 def _areas(t: np.ndarray) -> np.ndarray:

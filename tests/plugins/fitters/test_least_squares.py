@@ -15,7 +15,7 @@ from orbiframe import Basis, DifferentiableBasis, FitError, Points, Samples, Usa
 
 def space(name: str, size: int = 40) -> Gaussian:
     triangulation = surfaces.triangulated(name)
-    return Gaussian(triangulation.orbifold, triangulation, size=size)
+    return Gaussian(triangulation.orbifold, triangulation, size=size, width=1.3)
 
 
 def samples(basis: Basis, count: int, dimension: int = 3) -> Samples:

@@ -1,23 +1,20 @@
 from __future__ import annotations
 
-import base64
 import contextlib
-import struct
-import zlib
 
 import meshio
 import numpy as np
 import pytest
 from orbiframe_meshio import cells
-from orbiframe_meshio.plugin import SUFFIXES
+from orbiframe_meshio.plugin import READ, SUFFIXES
 from orbiframe_meshio.reader import read
 from orbiframe_meshio.writer import write
 
 from orbiframe import FormatError, Polyhedron
 from orbiframe.testing import Lab, contract_tests
 
-test_reader_laws = contract_tests("reader", read, suffix=".vtu", counterpart=write)
-test_writer_laws = contract_tests("writer", write, suffix=".vtk", counterpart=read)
+test_reader_laws = contract_tests("reader", read, suffix=".vol", counterpart=write)
+test_writer_laws = contract_tests("writer", write, suffix=".post", counterpart=read)
 
 POINTS = np.array([[0.1, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 1 / 3]])
 PYRAMID = Polyhedron.from_faces(POINTS, [[0, 1, 4], [3, 2, 1, 0], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
@@ -55,9 +52,9 @@ def test_larger_polygons_where_the_format_holds_them(tmp_path, suffix):
     assert np.array_equal(cells.polyhedron_of(tmp_path / f"a{suffix}").tail, prism.tail)
 
 
-@pytest.mark.parametrize("suffix", [*sorted(set(SUFFIXES) - {".vtk", ".vtu"}), ".off", ".stl"])
+@pytest.mark.parametrize("suffix", [*SUFFIXES, ".off", ".stl"])
 def test_what_meshio_would_lose_is_refused(tmp_path, suffix):
-    with pytest.raises(FormatError, match=rf"a\{suffix}"):
+    with pytest.raises(FormatError, match=rf"a\{suffix}.*(triangles and quads|without loss|plane)"):
         cells.save(tmp_path / f"a{suffix}", Lab(tmp_path).polyhedra["prism"])
 
 
@@ -82,7 +79,7 @@ def test_lines_and_points_are_left_out_and_solids_refused(tmp_path):
 def test_the_end_of_the_process_is_an_error(tmp_path):
     path = tmp_path / "a.off"
     path.write_text("COFF\n1 1 1\n")
-    with pytest.raises(FormatError, match=r"a\.off.*meshio failed"):
+    with pytest.raises(FormatError, match=r"a\.off.*cannot make sense"):
         read(path)
 
 
@@ -127,6 +124,14 @@ def test_an_include_is_not_followed(tmp_path):
         cells.polyhedron_of(path)
 
 
+@pytest.mark.parametrize("suffix", [".inp", ".nas", ".msh", ".meshb", ".dat"])
+def test_what_has_a_reader_of_its_own_is_not_read_by_name(tmp_path, suffix):
+    path = tmp_path / f"a{suffix}"
+    path.write_bytes(b"*NODE\n")
+    with pytest.raises(FormatError, match=r"keywords that meshio passes over; leave the format away"):
+        read(path)
+
+
 @pytest.mark.parametrize("suffix", [".xdmf", ".med", ".cgns", ".exo", ".h5m"])
 def test_formats_that_link_to_other_files_are_not_opened(tmp_path, suffix):
     path = tmp_path / f"a{suffix}"
@@ -144,29 +149,7 @@ def test_an_entity_behind_much_text_is_seen(tmp_path, encoding):
         cells.polyhedron_of(path)
 
 
-def test_a_compressed_block_that_swells_is_stopped(tmp_path):
-    """A gigabyte of zeros in a megabyte of zlib."""
-    path = tmp_path / "a.vtu"
-    size = 2**30
-    packer = zlib.compressobj(9)
-    block = b"".join([*(packer.compress(bytes(2**22)) for _ in range(size // 2**22)), packer.flush()])
-    head = base64.b64encode(struct.pack("<4I", 1, size, size, len(block)))
-    points = head + base64.b64encode(block)
-    path.write_bytes(
-        b'<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian" header_type="UInt32" '
-        b'compressor="vtkZLibDataCompressor"><UnstructuredGrid><Piece NumberOfPoints="44739242" NumberOfCells="1">'
-        b"<Points>"
-        b'<DataArray type="Float64" NumberOfComponents="3" format="binary">' + points + b"</DataArray></Points>"
-        b"<Cells></Cells></Piece></UnstructuredGrid></VTKFile>"
-    )
-    with pytest.raises(FormatError, match=r"a\.vtu.*(memory|MemoryError)"):
-        read(path)
-
-
 # ---- what is looked at beside meshio --------------------------------------------------------------------------------
-
-# Formats with neither counts nor an end: a file cut between lines is a smaller one.
-ENDLESS = {".inp"}
 
 
 def saved(path) -> Polyhedron:
@@ -179,7 +162,7 @@ def saved(path) -> Polyhedron:
     raise AssertionError(path)
 
 
-@pytest.mark.parametrize("suffix", sorted(set(SUFFIXES) - ENDLESS - {".meshb", ".tec", ".bdf", ".fem", ".dato"}))
+@pytest.mark.parametrize("suffix", sorted(set(READ) - {".dato"}))
 def test_a_file_cut_short_is_refused_or_whole(tmp_path, suffix):
     path = tmp_path / f"a{suffix}"
     made, content = saved(path), path.read_bytes()
@@ -193,7 +176,7 @@ def test_a_file_cut_short_is_refused_or_whole(tmp_path, suffix):
         assert np.allclose(found.vertices, made.vertices)
 
 
-@pytest.mark.parametrize("suffix", [".nas", ".vol", ".dat", ".avs", ".post", ".ugrid"])
+@pytest.mark.parametrize("suffix", [".vol", ".avs", ".post", ".ugrid"])
 def test_a_file_cut_short_is_not_read_for_ever(tmp_path, suffix):
     """Some readers of meshio ask for the next line again and again."""
     path = tmp_path / f"a{suffix}"
@@ -207,17 +190,14 @@ def test_a_file_cut_short_is_not_read_for_ever(tmp_path, suffix):
 @pytest.mark.parametrize(
     ("suffix", "old", "new", "said"),
     [
-        (".nas", b"BEGIN BULK", b"INCLUDE 'other.nas'\nBEGIN BULK", "line 2.*includes another"),
-        (".bdf", b"CTRIA3  1       ", b"CTRIA3* 1               ", "CTRIA3.*not read"),
-        (".nas", b"CQUAD4", b"cquad4", "cquad4.*not read"),
-        (
-            ".nas",
-            b"GRID*   1                               ",
-            b"GRID*   1               7               ",
-            "line 3.*coordinate systems",
-        ),
-        (".fem", b"ENDDATA", b"", "without 'ENDDATA'"),
         (".post", b"$COOR", b"$INCLUDE other.dato\n$COOR", "includes another"),
+        (".post", b"$COOR", b"$SYSTEM NAME=a\n$COOR", "SYSTEM.*changes what others mean"),
+        (".post", b"$COOR", b"$COOR DISPLACED = 1", "COOR.*changes what others mean"),
+        (".post", b"$STRUCTURE", b"$STRUCTURE\r$SYSTEM", "SYSTEM.*changes what others mean"),
+        (".dato", b"$ELEMENT", b"ELEMENT", "ELEMENT.*changes what others mean"),
+        (".dato", b"$ELEMENT", b"$COOR\n1 0 0 0\n$ELEMENT", "twice"),
+        (".su2", b"NDIME= 2", b"NZONE= 2\nNDIME= 2", "NZONE.*changes what others mean"),
+        (".su2", b"NDIME= 2", b"NDIME= 2\nNDIME= 2", "twice"),
         (".dato", b"$FIN", b"", r"without '\$FIN'"),
         (".vol", b"endmesh", b"", "without 'endmesh'"),
         (".su2", b"NELEM= 6", b"NELEM= 5", "could not parse"),
@@ -238,15 +218,6 @@ def test_what_meshio_would_believe_is_refused(tmp_path, suffix, old, new, said):
         cells.polyhedron_of(path)
 
 
-def test_a_second_zone_is_not_passed_over(tmp_path):
-    path = tmp_path / "a.dat"
-    saved(path)
-    content = path.read_bytes()
-    path.write_bytes(content + content[content.index(b"ZONE") :])
-    with pytest.raises(FormatError, match=r"a\.dat.*goes on"):
-        cells.polyhedron_of(path)
-
-
 def test_names_of_boundaries_in_su2_are_no_trouble(tmp_path):
     path = tmp_path / "a.su2"
     made = saved(path)
@@ -259,11 +230,11 @@ def test_su2_holds_surfaces_in_the_plane(tmp_path):
         cells.save(tmp_path / "a.su2", PYRAMID)
 
 
-@pytest.mark.parametrize("suffix", [".nas", ".vol", ".dat"])
+@pytest.mark.parametrize("suffix", [".vol", ".avs"])
 def test_comments_in_latin_1_are_no_trouble(tmp_path, suffix):
     path = tmp_path / f"a{suffix}"
-    made, mark = saved(path), {".nas": b"$", ".vol": b"#", ".dat": b"#"}[suffix]
-    path.write_bytes(mark + b" gr\xfc\xdfe\n" + path.read_bytes())
+    made = saved(path)
+    path.write_bytes(b"# gr\xfc\xdfe\n" + path.read_bytes())
     assert np.array_equal(cells.polyhedron_of(path).tail, made.tail)
 
 

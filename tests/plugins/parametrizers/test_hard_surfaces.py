@@ -7,7 +7,7 @@ from functools import partial
 import hard_surfaces as hard
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import example, given, settings, strategies as st
 from orbiframe_parametrizers.harmonic import harmonic
 from orbiframe_parametrizers.sphere import sphere
 from reference_meshes import edge_lengths, geometry
@@ -163,6 +163,7 @@ def random_case(name: str, seed: int) -> Polyhedron:
 
 @settings(max_examples=40, deadline=None)
 @given(NAMES, SEEDS)
+@example("genus 3", 2786)
 def test_random_triangulations_are_mapped(name: str, seed: int) -> None:
     mesh = random_case(name, seed)
     found = mapped(mesh)

@@ -53,6 +53,20 @@ def test_perturbed_transitions_are_brought_back(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
+def test_matrices_off_the_group_are_brought_back(name):
+    """Long products leave the group, and no correction within it helps."""
+    result = layout(name)
+    atlas, rng = result.orbifold.atlas, np.random.default_rng(5)
+    noisy = atlas.isometry.copy()
+    noisy[1::2] += 1e-8 * rng.normal(size=noisy[1::2].shape)
+    noisy[2::2] = atlas.geometry.inverse(noisy[1::2])
+    assert atlas.geometry.isometry_defect(noisy).max() > 1e-8
+    mended = with_relations(atlas.geometry, result.transition, noisy)
+    assert defect(mended, result.transition) < 1e-13
+    assert atlas.geometry.isometry_defect(mended).max() < 1e-13
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_iteration_finds_what_the_factors_find(name, monkeypatch):
     """Also where a relation says nothing, g e g^-1 = e, whose row is zero."""
     result = layout(name)

@@ -1,13 +1,16 @@
 from __future__ import annotations
 
+import time
+import warnings
 import zipfile
 
 import numpy as np
 import pytest
 from orbiframe_polygons.threemf_reader import MODEL, RELATIONS, read
 from orbiframe_polygons.threemf_writer import RELATION, TYPES, write
+from small_meshes import volume
 
-from orbiframe import FormatError, Polyhedron
+from orbiframe import FormatError, Notice, Polyhedron
 from orbiframe.testing import contract_tests
 
 test_reader_laws = contract_tests("reader", read, suffix=".3mf", counterpart=write)
@@ -66,6 +69,58 @@ def test_parts_that_repeat_again_and_again_are_refused(tmp_path):
         read(of(tmp_path, model))
 
 
+def test_calls_without_points_are_counted_too(tmp_path):
+    """2^30 calls in a kilobyte."""
+    empty = '<object id="0"><mesh><vertices/><triangles/></mesh></object>'
+    doubled = "".join(
+        f'<object id="{k}"><components>' + f'<component objectid="{k - 1}"/>' * 2 + "</components></object>"
+        for k in range(1, 31)
+    )
+    model = f'<model><resources>{empty}{doubled}</resources><build><item objectid="30"/></build></model>'
+    with pytest.raises(FormatError, match="too often"):
+        read(of(tmp_path, model))
+
+
+def test_items_are_counted_before_they_are_made(tmp_path):
+    vertices = '<vertex x="0" y="0" z="0"/>' * 20_000
+    mesh = (
+        f'<object id="1"><mesh><vertices>{vertices}</vertices><triangles><triangle v1="0" v2="1" v3="2"/></triangles>'
+    )
+    items = '<item objectid="1"/>' * 40_000
+    model = f"<model><resources>{mesh}</mesh></object></resources><build>{items}</build></model>"
+    start = time.process_time()
+    with pytest.raises(FormatError, match="too often"):
+        read(of(tmp_path, model))
+    assert time.process_time() - start < 5  # eight hundred million points would take minutes
+
+
+@pytest.mark.parametrize(("unit", "size"), [("inch", 25.4), ("micron", 0.001), ("meter", 1000), ("foot", 304.8)])
+def test_a_unit_is_converted_to_millimetres_and_said(tmp_path, unit, size):
+    with pytest.warns(Notice, match=rf"the unit is {unit}; coordinates are converted to millimetres \(times {size}\)"):
+        found = read(of(tmp_path, PLAIN.replace("<model>", f'<model unit="{unit}">')))
+    assert np.allclose(found.vertices, size * np.array(CORNERS))
+
+
+def test_millimetres_are_no_news(tmp_path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert read(of(tmp_path, PLAIN.replace("<model>", '<model unit="millimeter">'))).vertices.max() == 1
+
+
+def test_a_mirroring_transform_turns_the_faces(tmp_path):
+    mirror = 'transform="-1 0 0 0 1 0 0 0 1 0 0 0"'
+    plain, turned = (
+        read(of(tmp_path, PLAIN)),
+        read(of(tmp_path, PLAIN.replace('item objectid="1"', f'item objectid="1" {mirror}'))),
+    )
+    assert volume(turned) == pytest.approx(volume(plain))
+    pair = f'<object id="2"><components><component objectid="1" {mirror}/></components></object>'
+    twice = PLAIN.replace("</resources>", pair + "</resources>").replace(
+        'item objectid="1"', f'item objectid="2" {mirror}'
+    )
+    assert read(of(tmp_path, twice)).triangles.tolist() == TETRAHEDRON
+
+
 def test_an_archive_that_swells_is_refused(tmp_path):
     with pytest.raises(FormatError, match="swells"):
         read(of(tmp_path, PLAIN.replace("<model>", "<model>" + " " * 50_000_000)))
@@ -83,6 +138,12 @@ def test_an_archive_that_swells_is_refused(tmp_path):
             PLAIN.replace('item objectid="1"', 'item objectid="1" p:path="/3D/other.model"'),
             "line 3.*another part|prefix",
         ),
+        (PLAIN.replace("<model>", '<model unit="parsec">'), "line 2.*'parsec'"),
+        (
+            PLAIN.replace("<model>", '<model requiredextensions="b" xmlns:b="http://a/beamlattice/2017/02">'),
+            "line 2.*requires the extension.*beamlattice",
+        ),
+        (PLAIN.replace("</resources>", OBJECT + "</resources>"), "second object '1'"),
         (PLAIN.replace('x="1"', 'x="nan"'), "line 3.*finite"),
         (PLAIN.replace('x="1"', 'x=""'), "line 3.*finite"),
         (PLAIN.replace('x="1"', 'x="1 1"'), "line 3.*finite"),

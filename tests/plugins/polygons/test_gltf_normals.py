@@ -12,8 +12,6 @@ from exact_surfaces import surface_of
 from orbiframe import Points, Registry
 from orbiframe.files import gate
 
-pytest.importorskip("open3d", reason='glTF needs the extra "orbiframe[open3d]"')
-
 # glTF 2.0, section 3.6.2: component types and numbers of components.
 _NUMBERS = {5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTH = {"SCALAR": 1, "VEC3": 3}

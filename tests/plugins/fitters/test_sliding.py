@@ -1,0 +1,152 @@
+"""Sliding fits: shapes that are known, invariance, and what the fit must not do."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import reference_surfaces as surfaces
+from fitted import REGISTRY, grid
+from orbiframe_bases.gaussian import Gaussian
+from orbiframe_bases.powell_sabin import PowellSabin2, PowellSabin6
+from orbiframe_fitters.least_squares import LeastSquares
+from orbiframe_fitters.sliding import Schedule, Sliding, _linearised, _normals, _Slide
+
+from orbiframe import Samples, UsageError
+from orbiframe.functions import coordinate_samples
+from orbiframe.meshes import bisected, triangulated
+
+BIG, SMALL = 3.0, 1.0
+
+
+def torus_points(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    ring = BIG + SMALL * np.cos(v)
+    return np.stack([ring * np.cos(u), ring * np.sin(u), SMALL * np.sin(v)], axis=1)
+
+
+def off_torus(x: np.ndarray) -> np.ndarray:
+    return np.abs(np.hypot(np.hypot(x[:, 0], x[:, 1]) - BIG, x[:, 2]) - SMALL)
+
+
+@pytest.fixture(scope="module")
+def mapped():
+    """A map that is not conformal: the even grid of angles, on a mesh of 24 by 12 quads."""
+    mesh = bisected(triangulated(grid(24, 12, torus_points)), 0.5, True).polyhedron
+    return REGISTRY.load("parametrizer", "harmonic")(mesh, REGISTRY.geometry(0), None)
+
+
+@pytest.fixture(scope="module")
+def exact(mapped):
+    """Samples that lie on the torus, and whose parameters do not fit to their places: 0.1 off along the surface."""
+    samples = coordinate_samples(mapped)
+    ring = np.hypot(samples.values[:, 0], samples.values[:, 1])
+    u, v = np.arctan2(samples.values[:, 1], samples.values[:, 0]), np.arctan2(samples.values[:, 2], ring - BIG)
+    rng = np.random.default_rng(4)
+    values = torus_points(u + 0.03 * rng.normal(size=len(u)), v + 0.1 * rng.normal(size=len(v)))
+    return replace(samples, values=values)
+
+
+@pytest.mark.parametrize("make", [Gaussian, PowellSabin2, PowellSabin6])
+def test_wrong_parameters_do_not_matter(make, mapped, exact) -> None:
+    basis = make(mapped.orbifold, mapped, size=300)
+    linear, slid = (fitter().fit(basis, exact) for fitter in (LeastSquares, Sliding))
+    before, after = (off_torus(basis.values(exact.points, c)) for c in (linear, slid))
+    assert np.sqrt(np.mean(after**2)) < 0.3 * np.sqrt(np.mean(before**2))
+
+
+def test_points_of_a_smooth_surface_alone(mapped) -> None:
+    """288 vertices, and fairness between them: nearer than the facets by two orders."""
+    from orbiframe.functions import vertex_samples
+
+    coarse = triangulated(grid(24, 12, torus_points))
+    refinement = bisected(coarse, 0.5, True)
+    samples = vertex_samples(mapped, refinement)
+    assert (samples.weights > 0).sum() == 288
+    basis = PowellSabin6(mapped.orbifold, mapped, size=600)
+    everywhere = coordinate_samples(mapped)
+    facets = np.sqrt(np.mean(off_torus(everywhere.values) ** 2))
+    error = off_torus(basis.values(everywhere.points, Sliding().fit(basis, samples)))
+    assert np.sqrt(np.mean(error**2)) < 0.02 * facets
+
+
+def test_moving_the_data_moves_the_surface(mapped, exact) -> None:
+    """Rotated, shifted, scaled and mirrored samples give a surface that is so too."""
+    basis = PowellSabin2(mapped.orbifold, mapped, size=150)
+    turn = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]
+    changed = replace(exact, values=2.5 * exact.values @ turn.T + [1.0, -2.0, 0.5], weights=6.25 * exact.weights)
+    changed = replace(changed, stretch=exact.stretch / 6.25)
+    places = exact.points
+    expected = 2.5 * basis.values(places, Sliding().fit(basis, exact)) @ turn.T + [1.0, -2.0, 0.5]
+    np.testing.assert_allclose(basis.values(places, Sliding().fit(basis, changed)), expected, atol=1e-6)
+
+
+def test_two_coordinates_are_fitted_by_least_squares(mapped, exact) -> None:
+    basis = PowellSabin2(mapped.orbifold, mapped, size=150)
+    flat = replace(exact, values=exact.values[:, :2])
+    np.testing.assert_array_equal(Sliding().fit(basis, flat), LeastSquares().fit(basis, flat))
+
+
+def test_no_step_leads_away(mapped, exact) -> None:
+    """The distance of the data to the surface falls from step to step."""
+    basis = PowellSabin2(mapped.orbifold, mapped, size=200)
+    first = LeastSquares().fit(basis, exact)
+    slide = _Slide(basis, exact, (Schedule(1e-4, 1e-2, 1e-3),))
+    found = []
+    for steps in range(4):
+        coefficients = slide.from_start(first, steps)
+        feet = slide._slid(
+            slide._slid([slide._feet(p.points, p.values, coefficients) for p in slide.data], coefficients), coefficients
+        )
+        found.append(slide._distance(feet))
+    assert (np.diff(found) <= 1e-12).all()
+    assert found[-1] < 0.5 * found[0]
+
+
+def test_curvature_and_normals_of_a_torus() -> None:
+    """The larger principal curvature of the torus is 1 / r, in any frame."""
+    u, v = np.random.default_rng(1).uniform(0, 2 * np.pi, size=(2, 40))
+    ring = BIG + SMALL * np.cos(v)
+    zero = np.zeros_like(u)
+    along = np.stack([-ring * np.sin(u), ring * np.cos(u), zero], axis=1)
+    across = SMALL * np.stack([-np.sin(v) * np.cos(u), -np.sin(v) * np.sin(u), np.cos(v)], axis=1)
+    inward = np.stack([-ring * np.cos(u), -ring * np.sin(u), zero], axis=1)
+    mixed = SMALL * np.stack([np.sin(v) * np.sin(u), -np.sin(v) * np.cos(u), zero], axis=1)
+    back = -SMALL * np.stack([np.cos(v) * np.cos(u), np.cos(v) * np.sin(u), np.sin(v)], axis=1)
+    normal, curvature = _normals(np.stack([torus_points(u, v), along, across, inward, mixed, back]))
+    np.testing.assert_allclose(curvature, 1 / SMALL, rtol=1e-9)
+    np.testing.assert_allclose(np.abs(np.einsum("ni,ni->n", normal, back)), SMALL, rtol=1e-9)
+
+
+def test_the_pull_along_the_surface_is_that_of_the_squared_distance() -> None:
+    """Outside of a circle of radius rho, the squared distance grows along it by d / (d + rho) of that of a point
+
+    (Pottmann, Leopoldseder and Hofer, 2002): here a cylinder of radius 2 seen from distance 0.5.
+    """
+    from orbiframe_fitters.sliding import _Feet
+
+    from orbiframe import Points
+
+    jets = np.zeros((6, 1, 3))
+    jets[0], jets[1], jets[2], jets[3] = [2, 0, 0], [0, 2, 0], [0, 0, 1], [-2, 0, 0]
+    gap = np.array([[0.5, 0.0, 0.0]])
+    form, wanted = _linearised(
+        _Feet(Points(np.zeros(1, int), np.eye(3)[:1]), [], jets, gap), np.ones(1), Schedule(0, 0, 0)
+    )
+    np.testing.assert_allclose(form, [[1, 0, 0, 0.5 / 2.5, 0, 0.5 / 2.5]], atol=1e-12)
+    np.testing.assert_allclose(wanted, [[0.5, 0, 0]], atol=1e-12)
+
+
+@pytest.mark.parametrize("options", [{"fairing": -1.0}, {"steps": -1}])
+def test_options_out_of_range(options) -> None:
+    with pytest.raises(UsageError, match=next(iter(options))):
+        Sliding(**options)
+
+
+def test_no_step_is_the_linear_fit() -> None:
+    triangulation = surfaces.triangulated("octagon")
+    basis = Gaussian(triangulation.orbifold, triangulation, size=40, width=1.3)
+    rng = np.random.default_rng(11)
+    points = surfaces.random_points(basis.orbifold, 600, rng)
+    data = Samples(points, rng.normal(size=(600, 3)), np.ones(600), np.ones(600))
+    np.testing.assert_array_equal(Sliding(steps=0).fit(basis, data), LeastSquares().fit(basis, data))
