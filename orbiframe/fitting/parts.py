@@ -71,11 +71,8 @@ def _own_config(config: Config, share: float, enlarged: float) -> Config:
     if size is not None:
         config = config.with_options("basis", size=max(_LEAST, round(size * share)))
     output = config.output
-    limits = {
-        name: None if value is None else value * enlarged
-        for name, value in (("tolerance", output.tolerance), ("max_error", output.max_error))
-    }
-    return replace(config, output=replace(output, **limits))
+    tolerance, largest = (None if value is None else value * enlarged for value in (output.tolerance, output.max_error))
+    return replace(config, output=replace(output, tolerance=tolerance, max_error=largest))
 
 
 def _numbered(progress: Progress, number: int, count: int) -> Progress:
