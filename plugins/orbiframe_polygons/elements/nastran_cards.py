@@ -15,7 +15,7 @@ from typing import NoReturn
 from orbiframe import FormatError
 from orbiframe_polygons.text import named, shown
 
-REAL = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[dDeE]([+-]?\d+)|([+-]\d+))?", re.ASCII)
+REAL = re.compile(r"([+-]?(?:\d++\.?\d*+|\.\d++))(?:[dDeE]([+-]?\d++)|([+-]\d++))?", re.ASCII)
 INTEGER = re.compile(r"[+-]?\d{1,15}", re.ASCII)
 BULK = re.compile(r"BEGIN\s+BULK\b(.*)", re.IGNORECASE)
 INCLUDE = re.compile(r"\s*INCLUDE\b", re.IGNORECASE)
