@@ -23,12 +23,14 @@ def coarse_torus():
 
 
 def test_a_mesh_of_a_smooth_shape_loses_its_facets() -> None:
-    """The surface is a hundred times nearer to the torus than the facets are."""
+    """The surface is thirty times nearer to the torus than the facets are."""
     result = pipeline.fit(coarse_torus(), config(200), REGISTRY)
     assert result.report["data"]["means"] == "smooth"
     x = result.surface.tessellate(5).vertices
     off = np.abs(np.hypot(np.hypot(x[:, 0], x[:, 1]) - 3, x[:, 2]) - 1)
-    assert np.sqrt(np.mean(off**2)) < 0.01 * result.report["distance"]["surface_to_mesh"]["rms"] * np.hypot(8, 8)
+    assert (
+        np.sqrt(np.mean(off**2)) < 0.03 * result.report["distance"]["surface_to_mesh"]["rms"] * coarse_torus().diagonal
+    )
     assert result.report["fit"]["rms"] < 1e-4 < result.report["distance"]["mesh_to_surface"]["rms"]
 
 
