@@ -23,23 +23,32 @@ def coarse_torus():
 
 
 def test_a_mesh_of_a_smooth_shape_loses_its_facets() -> None:
-    """The surface is a hundred times nearer to the torus than the facets are."""
+    """The surface is thirty times nearer to the torus than the facets are."""
     result = pipeline.fit(coarse_torus(), config(200), REGISTRY)
     assert result.report["data"]["means"] == "smooth"
     x = result.surface.tessellate(5).vertices
     off = np.abs(np.hypot(np.hypot(x[:, 0], x[:, 1]) - 3, x[:, 2]) - 1)
-    assert np.sqrt(np.mean(off**2)) < 0.01 * result.report["distance"]["surface_to_mesh"]["rms"] * np.hypot(8, 8)
+    assert (
+        np.sqrt(np.mean(off**2)) < 0.03 * result.report["distance"]["surface_to_mesh"]["rms"] * coarse_torus().diagonal
+    )
     assert result.report["fit"]["rms"] < 1e-4 < result.report["distance"]["mesh_to_surface"]["rms"]
 
 
-def test_facets_on_request_and_the_linear_fit() -> None:
-    slid = pipeline.fit(coarse_torus(), config(300, "data.means=facets"), REGISTRY).report
-    linear = pipeline.fit(
-        coarse_torus(), config(300, "data.means=facets", "fitter.name=least-squares"), REGISTRY
-    ).report
+def test_a_sliding_fit_of_a_box_is_much_nearer_than_the_linear_one() -> None:
+    slid, linear = (
+        pipeline.fit(mesh_of("cube.off"), config(300, f"fitter.name={name}"), REGISTRY).report
+        for name in ("sliding", "least-squares")
+    )
     assert slid["data"]["means"] == "facets"
-    assert slid["fit"]["rms"] < 0.8 * linear["fit"]["rms"]
-    assert slid["shape"]["folded_share"] == 0
+    assert slid["fit"]["rms"] < 0.7 * linear["fit"]["rms"]
+    assert slid["shape"]["folded_share"] < 1e-6
+
+
+def test_facets_on_request() -> None:
+    wanted = config(100, "data.means=facets", "fitter.name=least-squares")
+    report = pipeline.fit(coarse_torus(), wanted, REGISTRY).report
+    assert (report["data"]["means"], report["data"]["reason"]) == ("facets", "as asked")
+    assert report["fit"]["samples"] > 5000
 
 
 def test_distances_are_those_to_a_fine_mesh_of_the_surface() -> None:
@@ -62,16 +71,24 @@ def test_distances_are_those_to_a_fine_mesh_of_the_surface() -> None:
     assert back == pytest.approx(report["surface_to_mesh"]["max"], rel=1e-6)
 
 
-def test_a_folded_surface_is_told_by_its_area() -> None:
-    """A surface pushed through itself at one function."""
+def turned_share(mesh) -> float:
+    a, b, c = np.moveaxis(mesh.vertices[mesh.triangles], 1, 0)
+    vector = np.cross(b - a, c - a)
+    area = np.linalg.norm(vector, axis=1)
+    return area[np.einsum("fi,fi->f", vector, mesh.normals[mesh.triangles].sum(axis=1)) < 0].sum() / area.sum()
+
+
+def test_rims_that_are_coarsely_drawn_are_no_folds() -> None:
+    """A surface pushed through itself at one function: what is turned in a coarse mesh is not when it is cut fine."""
     from dataclasses import replace
 
     surface = fitted("double torus", 60).surface
-    assert folded_share(surface, surface.tessellate(bisected=True)) < 1e-6
     bent = surface.coefficients.copy()
-    bent[7] *= -3
+    bent[7] *= -8
     broken = replace(surface, coefficients=bent)
-    assert folded_share(broken, broken.tessellate(bisected=True)) > 1e-3
+    coarse = broken.tessellate(bisected=True)
+    assert folded_share(broken, coarse) <= 0.2 * turned_share(coarse)
+    assert folded_share(surface, surface.tessellate(bisected=True)) < 1e-6
 
 
 def test_a_surface_worse_than_a_point_is_an_error() -> None:
