@@ -111,13 +111,18 @@ def special(rng: np.random.Generator, a: np.ndarray) -> object:
 
 def changed_words(rng: np.random.Generator, text: str) -> str:
     """What a file says of itself, otherwise."""
-    about = json.loads(text)
     if rng.random() < 0.15:
         return damaged(rng, text.encode()).decode("latin-1")
+    try:
+        about = json.loads(text)
+    except ValueError:
+        about = None
+    if not isinstance(about, dict) or not about:  # changed before
+        return text
     key = list(about)[rng.integers(len(about))]
     if rng.random() < 0.2:
         del about[key]
-    elif key == "options" and rng.random() < 0.7 and about[key]:
+    elif key == "options" and rng.random() < 0.7 and about[key] and isinstance(about[key], dict):
         about[key][list(about[key])[rng.integers(len(about[key]))]] = any_value(rng)
     else:
         about[key] = any_value(rng)

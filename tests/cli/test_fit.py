@@ -172,7 +172,7 @@ DATASETS = Path(__file__).parents[2] / "datasets"
 
 REPORT = {
     "surface": {"name": "closed, orientable, genus 2, 1 component", "euler_characteristic": -2},
-    "triangles": {"diagonals": 50, "faces_cut": 50, "rule": "the shortest"},
+    "triangles": {"diagonals": 50, "faces_cut": 50, "points": 0, "rule": "the shortest"},
     "geometry": "h2",
     "group": {"source": "mesh", "patches": 1, "relation_defect": 2.5e-15},
     "map": {
