@@ -16,7 +16,6 @@ from .errors import (
 from .files.gate import read as read, write as write
 from .files.surface_file import load_surface as load_surface, save_surface as save_surface
 from .fitting.config import Config as Config
-from .fitting.parts import fit_parts as fit_parts
 from .fitting.pipeline import fit as fit
 from .functions.basis import Basis as Basis, DifferentiableBasis as DifferentiableBasis
 from .functions.fitter import Fitter as Fitter
