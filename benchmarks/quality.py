@@ -56,6 +56,8 @@ def measured(method: str, shape: Shape, mesh: Polyhedron, tile: Path | None) -> 
         skin, seconds = surface(method, shape, mesh)
     except (OrbiframeError, peers.Refused) as error:
         return Result(*said, reason=str(error), day=today())
+    except Exception as error:  # a crash is a result too, and the run goes on
+        return Result(*said, reason=f"crash: {type(error).__name__}: {error}", day=today())
     if not np.isfinite(skin.vertices).all():
         return Result(*said, seconds=seconds, reason="a coordinate is not finite", day=today())
     if tile:
