@@ -18,7 +18,6 @@ from corpus.ply_text_files import ply_text
 from corpus.scene_files import scenes
 from corpus.stl_files import stl_binary, stl_text
 
-
 MAKERS = (off, obj, ply_text, ply_binary, stl_text, stl_binary, scenes, other)
 
 
