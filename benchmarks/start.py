@@ -1,6 +1,6 @@
 """The start of the command line in seconds: `python benchmarks/start.py`.
 
-The least and the median of some runs of `orbiframe --help` in processes of their own, beside a Python that does nothing.
+The least and the median of some runs of `orbiframe --help` in processes of their own, beside a bare Python.
 """
 
 from __future__ import annotations
