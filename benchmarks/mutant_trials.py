@@ -22,6 +22,8 @@ from typing import Any, NamedTuple
 ROOT = Path(__file__).parents[1]
 SOURCES = ("orbiframe", "plugins")
 _MEMORY = 14 * 2**30
+# Seconds by the clock for a processor second that a process is allowed: other work goes on beside.
+_PATIENCE = 20
 # Of pytest: all passed, or none was chosen.
 _GOOD = (0, 5)
 _LIBRARIES = (
@@ -93,20 +95,25 @@ class Tree:
         return linked
 
     def run(self, plugin: Any, files: Sequence[str], limit: float, code: Path | None = None) -> Outcome:
-        """Run test files in a new process with a plugin of pytest; the plugin may send lines to `plugin.received`."""
+        """Run test files in a new process with a plugin of pytest; the plugin may send lines to `plugin.received`.
+
+        limit: processor seconds; a process that only waits is ended after some times as many by the clock.
+        """
         read, write = os.pipe()
         start = time.perf_counter()
         child = os.fork()
         if not child:
             os.close(read)
+            resource.setrlimit(resource.RLIMIT_CPU, (int(limit) + 1, int(limit) + 10))
             _in_child(self.root, code or self.code, plugin, files, write)
         os.close(write)
         reader = threading.Thread(target=_receive, args=(read, plugin.received))
         reader.start()
-        status = _wait(child, start + limit)
+        status = _wait(child, start + _PATIENCE * limit)
         reader.join(5)
-        failed = plugin.failed or ("" if status in (None, *_GOOD) else f"the process ended with {status}")
-        return Outcome(failed, status is not None, time.perf_counter() - start)
+        late = status in (None, -signal.SIGXCPU)
+        failed = plugin.failed or ("" if late or status in _GOOD else f"the process ended with {status}")
+        return Outcome(failed, not late, time.perf_counter() - start)
 
 
 def _receive(end: int, received: Callable[[Any], None]) -> None:

@@ -28,6 +28,8 @@ _PAIRS = [
 ]  # fmt: skip
 _OTHER_NAME = {a: b for pair in _PAIRS for a, b in (pair, pair[::-1])}
 _WRAPPERS = {"abs", "sqrt", "sort", "sorted", "reversed", "unique", "exp", "square", "transpose", "round", "log"}
+# Of two arguments of one type.
+_NOT_SYMMETRIC = {"cross", "arctan2", "geodesic", "log", "chord", "divmod", "setdiff1d", "isin", "subtract"}
 _LEFT_KEYWORDS = {"dtype", "kind", "strict", "copy", "encoding", "category", "stacklevel", "flush", "help", "metavar"}
 _ZEROS = {"float": "0.0", "int": "0", "str": "''", "list": "[]", "tuple": "()", "dict": "{}"}
 _ARRAYS = ("Floats", "Ints", "Bools", "NDArray")
@@ -87,6 +89,8 @@ class _Finder:
         if isinstance(node, ast.FunctionDef | ast.ClassDef):
             self._visit_definition(node)
             return
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            return
         if isinstance(node, ast.stmt):
             self._note(node, _changed_statements(node, self.returns[-1] if self.returns else ""))
         elif isinstance(node, ast.expr):
@@ -122,8 +126,6 @@ class _Finder:
 def _children(node: ast.AST) -> Iterator[ast.AST]:
     """Those parts of a node in which a mutation means something."""
     if isinstance(node, ast.Raise | ast.Assert | ast.Import | ast.ImportFrom | ast.JoinedStr):
-        return
-    if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
         return
     if isinstance(node, ast.AnnAssign):
         yield from [node.value] if node.value is not None else []
@@ -195,11 +197,13 @@ def _calls(node: ast.Call) -> Iterator[tuple[str, ast.expr]]:
         yield "other function", changed
     if name in _WRAPPERS and len(node.args) == 1:
         yield "call dropped", node.args[0]
-    if name == "range":
-        *before, last = node.args
-        yield "range shorter", ast.Call(node.func, [*before, ast.BinOp(last, ast.Sub(), ast.Constant(1))], [])
-    plain = len(node.args) >= 2 and not any(isinstance(a, ast.Starred | ast.Constant) for a in node.args[:2])
-    if plain and name not in ("isinstance", "getattr", "minimum", "maximum", "min", "max", "hypot", "cast", "zip"):
+    if name == "range" and node.args:
+        stop = min(1, len(node.args) - 1)
+        shorter = ast.BinOp(node.args[stop], ast.Sub(), ast.Constant(1))
+        yield "range shorter", ast.Call(node.func, [*node.args[:stop], shorter, *node.args[stop + 1 :]], [])
+    if name == "where" and len(node.args) == 3:
+        yield "branches swapped", ast.Call(node.func, [node.args[0], node.args[2], node.args[1]], [])
+    if name in _NOT_SYMMETRIC and len(node.args) >= 2:
         yield "arguments swapped", ast.Call(node.func, [node.args[1], node.args[0], *node.args[2:]], node.keywords)
     for k, keyword in enumerate(node.keywords):
         if keyword.arg is not None and keyword.arg not in _LEFT_KEYWORDS:
