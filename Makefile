@@ -5,15 +5,18 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: demo warm-up test lint mutants constraints clean
+.PHONY: demo warm-up test quick lint mutants constraints clean
 
 demo: $(VENV)/warm  ## one smooth surface from a mesh of genus 2
 	$(BIN)/orbiframe fit datasets/plate_genus2.off -o plate_genus2_smooth.ply
 
 warm-up: $(VENV)/warm  ## everything compiled, so that nothing waits for it later
 
-test: $(VENV)/developer  ## all tests, with Open3D
-	$(BIN)/python -m pytest
+test: $(VENV)/developer  ## all tests, with Open3D, on all cores
+	$(BIN)/python -m pytest -m "long or not long" --numprocesses auto --dist worksteal
+
+quick: $(VENV)/developer  ## the tests that take no time, on all cores
+	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
 lint: $(VENV)/developer  ## style, types, and who imports whom
 	$(BIN)/ruff check .

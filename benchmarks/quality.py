@@ -56,11 +56,13 @@ def measured(method: str, shape: Shape, mesh: Polyhedron, tile: Path | None) -> 
         skin, seconds = surface(method, shape, mesh)
     except (OrbiframeError, peers.Refused) as error:
         return Result(*said, reason=str(error), day=today())
+    except Exception as error:  # a crash is a result too, and the run goes on
+        return Result(*said, reason=f"crash: {type(error).__name__}: {error}", day=today())
     if not np.isfinite(skin.vertices).all():
         return Result(*said, seconds=seconds, reason="a coordinate is not finite", day=today())
     if tile:
         pictures.tile(skin.vertices, skin.triangles, tile, pictures.view_of(mesh))
-    found = measures.errors(skin, mesh, shape.truth)
+    found = measures.errors(skin, shape.finer() if shape.finer else mesh, shape.truth)
     curvature = None if np.isnan(found.curvature) else found.curvature
     crossing = None if found.crossing < 0 else found.crossing
     numbers = (float(found.rms), float(found.max), float(found.normals), curvature, crossing)

@@ -25,12 +25,17 @@ _NOISE = 0.002
 
 @dataclass(frozen=True)
 class Shape:
-    """A mesh by name. kind: the heading that it stands under; truth: None where the faces are all that is known."""
+    """A mesh by name. kind: the heading that it stands under.
+
+    truth: the surface in closed form on which its vertices lie, if any; finer: a mesh of which it has some vertices.
+    Where there is neither, its own faces are all that is known.
+    """
 
     name: str
     kind: str
     mesh: Callable[[], Polyhedron]
     truth: Truth | None = None
+    finer: Callable[[], Polyhedron] | None = None
 
     @property
     def meant(self) -> str:
@@ -62,21 +67,36 @@ SPHERE = _level(fields.ellipsoid(1, 1, 1), (1.1, 1.1, 1.1), 0.03)
 
 def _thinned(truth: Level, step: float, count: int) -> Polyhedron:
     """A net with edges collapsed until so many vertices are left: irregular."""
-    mesh = triangulated(truth.net(step))
+    thin = _collapsed(triangulated(truth.net(step)), count)
+    return thin.with_vertices(truth.onto(thin.vertices))
+
+
+def _collapsed(mesh: Polyhedron, count: int) -> Polyhedron:
     meshes = pymeshlab.MeshSet(verbose=False)
     meshes.add_mesh(pymeshlab.Mesh(mesh.vertices, mesh.triangles))
     faces = mesh.face_count - 2 * (len(mesh.vertices) - count)
     meshes.meshing_decimation_quadric_edge_collapse(
-        targetfacenum=faces, preservetopology=True, qualitythr=1.0, planarquadric=True, planarweight=0.01
+        targetfacenum=faces,
+        preservetopology=True,
+        qualitythr=1.0,
+        planarquadric=True,
+        planarweight=0.01,
+        optimalplacement=False,
     )
     found = meshes.current_mesh()
-    return Polyhedron.from_faces(truth.onto(found.vertex_matrix()), found.face_matrix().astype(np.intp))
+    return Polyhedron.from_faces(found.vertex_matrix(), found.face_matrix().astype(np.intp))
 
 
 def _halved(mesh: Polyhedron) -> Polyhedron:
     """Quadrilaterals cut alike, from the first corner."""
     a, b, c, d = mesh.tail.reshape(-1, 4).T
     return Polyhedron.from_faces(mesh.vertices, np.concatenate([np.stack(f, axis=1) for f in ((a, b, c), (a, c, d))]))
+
+
+def _thinned_file(name: str, file: str, count: int) -> Shape:
+    """A mesh of some vertices of another one, edges collapsed onto one of their ends."""
+    finer = _file("meshes", file)
+    return Shape(name, "organic", lambda: _collapsed(triangulated(finer()), count), finer=finer)
 
 
 def _noisy(mesh: Polyhedron, share: float = _NOISE) -> Polyhedron:
@@ -169,11 +189,11 @@ SHAPES = (
     Shape("scan of a starfish", "scan", lambda: _noisy(_thinned(STARFISH, 0.05, 3000), 0.001), STARFISH),
     Shape("eight", "organic", _file("meshes", "eight.off")),
     Shape("bob", "organic", _file("meshes", "gc_bob_small.ply")),
-    Shape("spot", "organic", _file("meshes", "gc_spot.ply")),
+    _thinned_file("spot, 700 of 2930", "gc_spot.ply", 700),
     Shape("spot, a cage", "organic", _file("meshes", "odedstein_spot_control.obj")),
-    Shape("skull", "organic", _file("meshes", "odedstein_skull_low.obj")),
-    Shape("knot", "organic", _file("meshes", "knot1.off")),
-    Shape("blobby", "organic", _file("meshes", "blobby-shuffled.off")),
+    _thinned_file("skull, 1300 of 5154", "odedstein_skull_low.obj", 1300),
+    _thinned_file("knot, 800 of 3200", "knot1.off", 800),
+    _thinned_file("blobby, 500 of 2027", "blobby-shuffled.off", 500),
     Shape("fox", "low polygons", _file("cases/meshes", "fox.off")),
     Shape("finger", "low polygons", _file("cases/meshes", "finger.off")),
     Shape("star", "low polygons", _file("meshes", "star.off")),

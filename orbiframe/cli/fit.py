@@ -11,11 +11,13 @@ from orbiframe.cli.progress import Progress
 from orbiframe.cli.repairs import add_repairs, repaired, repairs_asked
 from orbiframe.cli.report import json_text, summary, write_report
 from orbiframe.components.registry import Registry
+from orbiframe.errors import UsageError
 from orbiframe.files.destination import require_destination
 from orbiframe.files.outputs import require_apart, require_output
 
 if TYPE_CHECKING:
     from orbiframe.fitting.config import Config
+    from orbiframe.fitting.parts import Parts
     from orbiframe.fitting.pipeline import Result
     from orbiframe.meshes.polyhedron import Polyhedron
 
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add("mesh", metavar="MESH", type=Path, help="a closed mesh, orientable or not, of any genus")
+    add("mesh", metavar="MESH", type=Path, help="closed surfaces, one or several, orientable or not, of any genus")
     add("-o", "--output", metavar="OUT", type=Path, required=True, help="a fine mesh, or the exact surface as .step")
     add("--config", metavar="FILE.toml", type=Path, help="components and options of the steps")
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=200")
@@ -53,9 +55,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace, registry: Registry) -> int:
     """Fit, write what was asked for, and say what came out."""
     from orbiframe.files import gate
-    from orbiframe.files.surface_file import save_surface
-    from orbiframe.fitting import pipeline
     from orbiframe.fitting.config import Config
+    from orbiframe.fitting.parts import fit_parts
 
     config = Config.load(args.config, overrides(args))
     for path in config.plugins:
@@ -64,19 +65,38 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     _require_destinations(args, config, registry)
     mesh = _repaired(args, config, registry) if repairs_asked(args) else args.mesh
     progress = Progress(quiet=args.quiet)
-    result = pipeline.fit(mesh, config, registry, progress)
+    found = fit_parts(mesh, config, registry, progress)
     if exact := _exact(args, config, registry):
-        _export(args.output, result, registry, progress)
+        _export(args.output, _only(found, args.output), registry, progress)
     else:
-        gate.write(args.output, result.output, registry)
+        gate.write(args.output, found.output, registry)
     if args.save:
-        save_surface(result.surface, args.save)
+        _save(args.save, found)
     if args.report:
-        write_report(args.report, result.report)
+        write_report(args.report, found.report)
     if not args.quiet:
         written = args.output.stat().st_size if exact else None
-        print(json_text(result.report) if args.json else summary(result.report, exact=written))
+        print(json_text(found.report) if args.json else summary(found.report, exact=written))
     return 0
+
+
+def _only(found: Parts, path: Path) -> Result:
+    """The one part that there is; a file of exact patches holds no more."""
+    if len(found.results) > 1:
+        raise UsageError(
+            f"{path}: the mesh has {len(found.results)} components, and an exact surface is one; choose one with "
+            "--component N, or write a mesh"
+        )
+    return found.results[0]
+
+
+def _save(path: Path, found: Parts) -> None:
+    """Write the surface, or one file for each, numbered: FILE-1.npz, FILE-2.npz and so on."""
+    from orbiframe.files.surface_file import save_surface
+
+    several = len(found.results) > 1
+    for number, result in enumerate(found.results, start=1):
+        save_surface(result.surface, path.with_stem(f"{path.stem}-{number}") if several else path)
 
 
 def _export(path: Path, result: Result, registry: Registry, progress: Progress) -> None:

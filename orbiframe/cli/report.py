@@ -25,16 +25,29 @@ def json_text(report: Mapping[str, Any]) -> str:
 
 def summary(report: Mapping[str, Any], *, exact: int | None = None) -> str:
     """A report in a few lines; exact: the bytes of the file where the surface itself was written, and no mesh on it."""
-    return "\n".join(f"{name:<10}{words}" for name, words in _lines(report, exact))
+    lines = _lines_of_parts(report) if "parts" in report else _lines(report, exact)
+    return "\n".join(f"{name:<10}{words}" for name, words in lines)
+
+
+def _lines_of_parts(report: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """The lines of every part, without its output, and those of all together."""
+    parts, fit = report["parts"], report["fit"]
+    for number, part in enumerate(parts, start=1):
+        yield "part", f"{number} of {len(parts)}"
+        yield from (line for line in _lines(part, None) if line[0] not in ("output", "seconds"))
+    yield "together", f"{len(parts)} parts, {fit['size']} functions, {fit['samples']} samples"
+    yield "error", f"rms {fit['rms']:.2e}, max {fit['max']:.2e} of the diagonal of the box of all parts"
+    yield from _ending(report, None)
 
 
 def _lines(report: Mapping[str, Any], exact: int | None) -> Iterator[tuple[str, str]]:
-    surface, group, mapped, fit, out = (report[key] for key in ("surface", "group", "map", "fit", "output"))
+    surface, group, mapped, fit = (report[key] for key in ("surface", "group", "map", "fit"))
     yield "surface", f"{surface['name']} (Euler characteristic {surface['euler_characteristic']})"
     cut = report["triangles"]
     if cut["diagonals"]:
         faces = _counted(cut["faces_cut"], "face", "faces")
-        yield "triangles", f"{_counted(cut['diagonals'], 'diagonal', 'diagonals')} in {faces}: {cut['rule']}"
+        points = f", {_counted(cut['points'], 'of them with a point', 'of them with points')}" if cut["points"] else ""
+        yield "triangles", f"{_counted(cut['diagonals'], 'diagonal', 'diagonals')} in {faces}{points}: {cut['rule']}"
     yield "geometry", str(report["geometry"])
     patches = _counted(group["patches"], "patch", "patches")
     yield "group", f"{group['source']}, {patches}, relation defect {group['relation_defect']:.1e}"
@@ -53,6 +66,12 @@ def _lines(report: Mapping[str, Any], exact: int | None) -> Iterator[tuple[str, 
     yield "error", f"rms {fit['rms']:.2e}, max {fit['max']:.2e} of the bounding-box diagonal"
     yield from _distances(report["distance"])
     yield from (("warning", note) for note in report["notes"])
+    yield from _ending(report, exact)
+
+
+def _ending(report: Mapping[str, Any], exact: int | None) -> Iterator[tuple[str, str]]:
+    """What was written, and the time of each stage."""
+    out = report["output"]
     mesh = f"{out['vertices']} vertices, {out['faces']} faces"
     yield "output", mesh if exact is None else f"exact rational patches, {exact / 1e6:.2g} MB"
     stages = ", ".join(f"{stage} {seconds:.1f}" for stage, seconds in report["seconds"].items())

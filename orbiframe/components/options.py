@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
+from orbiframe.components.shown_text import shown
 from orbiframe.components.suggestion import did_you_mean
 from orbiframe.errors import ConfigError
 
@@ -68,7 +69,9 @@ def require_known(key: str, known: Mapping[str, object], table: str, places: Map
     if key not in known:
         allowed = ", ".join(known) or "none"
         place = place_of(f"{table}.{key}", places)
-        raise ConfigError(f"{place}[{table}] has no option '{key}'; allowed: {allowed}.{did_you_mean(key, known)}")
+        raise ConfigError(
+            f"{place}[{table}] has no option '{shown(key, 100)}'; allowed: {allowed}.{did_you_mean(key, known)}"
+        )
 
 
 def checked_value(annotation: Any, value: object, key: str, places: Mapping[str, str]) -> Any:
@@ -83,7 +86,7 @@ def checked_value(annotation: Any, value: object, key: str, places: Mapping[str,
         found = error.errors(include_url=False)[0]
         inner = "".join(f"[{part}]" for part in found["loc"] if isinstance(part, int))
         reason = found["msg"][0].lower() + found["msg"][1:]
-        raise ConfigError(f"{place_of(key, places)}{key}{inner} = {value!r}: {reason}") from error
+        raise ConfigError(f"{place_of(key, places)}{key}{inner} = {shown(repr(value), 200)}: {reason}") from error
 
 
 def _require_small(value: object, key: str, places: Mapping[str, str], depth: int = 0) -> None:

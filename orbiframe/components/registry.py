@@ -14,6 +14,7 @@ import pluggy
 from orbiframe import plugin as hooks
 from orbiframe.components.geometry_names import geometry_name
 from orbiframe.components.plugin_file import imported_file
+from orbiframe.components.shown_text import shown
 from orbiframe.components.suggestion import did_you_mean
 from orbiframe.errors import PluginError, UsageError
 from orbiframe.plugin import KINDS, Component
@@ -89,7 +90,9 @@ class Registry:
         if not found:
             names = [c.name for c in self.components(kind)]
             installed = ", ".join(names) or "none"
-            raise UsageError(f"no {kind} named '{name}'; installed: {installed}.{did_you_mean(name, names)}")
+            raise UsageError(
+                f"no {kind} named '{shown(name, 100)}'; installed: {installed}.{did_you_mean(name, names)}"
+            )
         if len(found) > 1:
             owners = " and ".join(f"'{owner}'" for _, owner in found)
             raise PluginError(f"{kind} '{name}' is declared by the plugins {owners}; {_restrict_hint()}")

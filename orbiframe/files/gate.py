@@ -148,4 +148,6 @@ def _described(error: BaseException) -> str:
         return "the library for this format tried to end the program; the file is not what it expects"
     if isinstance(error, MemoryError):
         return "it asks for more memory than there is; are the counts in the file right?"
+    if isinstance(error, (LookupError, AssertionError, AttributeError, TypeError)):
+        return "it stopped at something that it did not expect; is the file damaged? --debug shows where"
     return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__

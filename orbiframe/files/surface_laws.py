@@ -77,13 +77,29 @@ def require_refinement(arrays: Arrays, coarse: Polyhedron, fine: Polyhedron) -> 
     require(whole, "child", "every triangle that is none of the coarse ones is half of one other")
     leaves = np.sort(child[side < 0])
     require(np.array_equal(leaves, np.arange(fine.face_count)), "child", "every fine triangle is one leaf")
-    require(_is_shallow(side, child, roots), "child", f"no triangle is halved more than {_DEEPEST} times")
     refinement = Bisection(coarse, fine, side, child, _flips(arrays, coarse))
-    places = refinement.spread(coarse.vertices[refinement.facets.triangles])
-    size = max(1.0, float(np.abs(coarse.vertices).max()))
-    near = np.abs(places - fine.vertices[fine.triangles]) <= _NEAR * size
-    require(near, "fine_vertices", "fine triangles are halves of coarse ones")
+    _require_halves(refinement)
     return refinement
+
+
+def _require_halves(refinement: Bisection) -> None:
+    """Two halves share the middle of a side and the opposite corner, and all of them make up the coarse triangles.
+
+    By the numbers of vertices: where the vertices lie is free, as those of a smooth mesh are moved.
+    """
+    side, child, fine = refinement.side, refinement.child, refinement.polyhedron
+    corners = np.empty((len(side), 3), dtype=np.intp)
+    leaf = side < 0
+    corners[leaf] = fine.triangles[child[leaf]]
+    for node in reversed(_levels(side, child, refinement.coarse.face_count)):
+        first, second, start = corners[child[node]], corners[child[node] + 1], side[node]
+        joined = (first[:, 2] == second[:, 2]) & (first[:, 1] == second[:, 0])
+        require(joined, "child", "two halves have the middle of a side and the opposite corner in common")
+        corners[node, start] = first[:, 0]
+        corners[node, (start + 1) % 3] = second[:, 1]
+        corners[node, (start + 2) % 3] = first[:, 2]
+    whole = corners[: refinement.coarse.face_count] == refinement.facets.triangles
+    require(whole, "fine_tail", "fine triangles are halves of coarse ones")
 
 
 def _flips(arrays: Arrays, coarse: Polyhedron) -> FlatFlips | None:
@@ -101,14 +117,15 @@ def _flips(arrays: Arrays, coarse: Polyhedron) -> FlatFlips | None:
     return flips
 
 
-def _is_shallow(side: Ints, child: Ints, roots: int) -> bool:
+def _levels(side: Ints, child: Ints, roots: int) -> list[Ints]:
+    """The triangles that are halved, those of each depth together, the coarse ones first."""
+    levels: list[Ints] = []
     node = np.arange(roots)
-    for _ in range(_DEEPEST):
-        node = node[side[node] >= 0]
-        if not len(node):
-            return True
+    while len(node := node[side[node] >= 0]):
+        require(len(levels) < _DEEPEST, "child", f"no triangle is halved more than {_DEEPEST} times")
+        levels.append(node)
         node = np.concatenate([child[node], child[node] + 1])
-    return False
+    return levels
 
 
 def require_atlas(arrays: Arrays, geometry: Any) -> Atlas:

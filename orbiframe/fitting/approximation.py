@@ -132,8 +132,8 @@ class Approximations:
     def _surface(
         self, mapped: Mapped, basis: Basis, meaning: Meaning, fitter: Fitter
     ) -> tuple[Samples, OrbifoldSurface]:
-        triangulation, refinement = mapped.triangulation, mapped.refinement
-        samples = self.stages("samples", meaning.samples, triangulation, refinement, basis.size)
+        triangulation, refinement, noise = mapped.triangulation, mapped.refinement, self.config.data.noise
+        samples = self.stages("samples", meaning.samples, triangulation, refinement, basis.size, noise)
         coefficients = self.stages("fit", fitter.fit, basis, samples)
         recipe = self.config.basis.name, self._options(basis.size)
         return samples, OrbifoldSurface(triangulation, refinement, basis, coefficients, np.zeros(3), 1.0, *recipe)

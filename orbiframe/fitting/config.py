@@ -15,6 +15,7 @@ from annotated_types import Ge, Gt
 
 from orbiframe.components.options import Option, checked_options, checked_value, options_of, place_of, require_known
 from orbiframe.components.registry import Registry
+from orbiframe.components.shown_text import shown
 from orbiframe.components.suggestion import did_you_mean
 from orbiframe.errors import ConfigError, FormatError, PluginError, UsageError
 from orbiframe.files.places import require_readable
@@ -55,11 +56,13 @@ class Data:
 
     means: "facets", the polyhedron is the truth; "smooth", its vertices lie on a smooth surface; "semi-smooth", so they
     do where facets are curved; "auto" decides by its bends. lift: whether a smooth mesh is mapped again after it has
-    been lifted onto its first surface.
+    been lifted onto its first surface. noise: the root mean square error of each coordinate of the vertices of a smooth
+    mesh, relative to the diagonal of the bounding box; None: found from the vertices.
     """
 
     means: Literal["auto", "smooth", "semi-smooth", "facets"] = "auto"
     lift: bool = True
+    noise: Annotated[float, Gt(0)] | None = None
 
 
 OPEN_NAMES = ("auto", "mesh", "none")
@@ -106,7 +109,7 @@ class Config:
         places = _places(text, path)
         for override in overrides:
             table, key, value = parsed_override(override)
-            place = places[f"{table}.{key}"] = f"--set {override}"
+            place = places[f"{table}.{key}"] = f"--set {shown(override, 100)}"
             require_table(table, TABLES, {table: place})
             tables[table] = {**_table(tables, table, places), key: value}
         return cls.from_tables(tables, places=places, folder=Path() if path is None else path.parent)
@@ -238,7 +241,7 @@ def parsed_override(text: str) -> tuple[str, str, Any]:
     name, equals, value = text.partition("=")
     table, dot, key = name.strip().partition(".")
     if not (equals and dot and table and key):
-        raise ConfigError(f"--set {text}: write TABLE.KEY=VALUE, such as basis.size=200")
+        raise ConfigError(f"--set {shown(text, 100)}: write TABLE.KEY=VALUE, such as basis.size=200")
     return table, key, _toml_value(value.strip())
 
 
@@ -259,7 +262,9 @@ def require_table(name: str, known: Sequence[str], places: Mapping[str, str]) ->
     """Raise ConfigError unless a table of this name is known."""
     if name not in known:
         place = place_of(name, places)
-        raise ConfigError(f"{place}no table named '{name}'; allowed: {', '.join(known)}.{did_you_mean(name, known)}")
+        raise ConfigError(
+            f"{place}no table named '{shown(name, 100)}'; allowed: {', '.join(known)}.{did_you_mean(name, known)}"
+        )
 
 
 def _table(tables: Mapping[str, Any], name: str, places: Mapping[str, str]) -> Mapping[str, Any]:

@@ -20,7 +20,7 @@ def require_size(size: object, places: Mapping[str, str]) -> None:
     """Raise ConfigError for a number of functions that no fit can have."""
     if not isinstance(size, int) or 1 <= size <= MOST_FUNCTIONS:
         return
-    needed = f": that takes about {_memory(size * _BYTES_A_FUNCTION)} of memory" if size > 0 else ""
+    needed = f": that takes {_memory(size * _BYTES_A_FUNCTION)} of memory" if size > 0 else ""
     raise ConfigError(
         f"{place_of('basis.size', places)}basis.size = {_number(size)}{needed}; give 1 to {MOST_FUNCTIONS}"
     )
@@ -36,7 +36,7 @@ def require_density(density: int | None, triangles: int, places: Mapping[str, st
         return
     raise ConfigError(
         f"{place_of('output.refine', places)}output.refine = {_number(density)} makes {_number(count)} triangles of "
-        f"{triangles}: that takes about {_memory(count * _BYTES_A_TRIANGLE)} of memory; give 1 to {most}"
+        f"{triangles}: that takes {_memory(count * _BYTES_A_TRIANGLE)} of memory; give 1 to {most}"
     )
 
 
@@ -46,4 +46,4 @@ def _number(value: int) -> str:
 
 
 def _memory(size: int) -> str:
-    return f"{_number(-(-size // 10**9))} GB"
+    return f"about {_number(-(-size // 10**9)).removeprefix('about ')} GB"

@@ -31,12 +31,14 @@ class Meaning(NamedTuple):
         """Whether the vertices alone are the truth."""
         return self.name == SMOOTH
 
-    def samples(self, triangulation: Triangulation, refinement: Bisection, size: int) -> Samples:
-        """What is approximated, by so many functions."""
+    def samples(
+        self, triangulation: Triangulation, refinement: Bisection, size: int, noise: float | None = None
+    ) -> Samples:
+        """What is approximated, by so many functions; noise: the rms error of a coordinate of a vertex, if known."""
         if self.name == FACETS:
             return coordinate_samples(triangulation)
         if self.name == SMOOTH:
-            return vertex_samples(triangulation, refinement)
+            return vertex_samples(triangulation, refinement, noise)
         area = vector_areas(refinement.coarse)
         return semi_smooth_samples(triangulation, refinement, float(((area**2).sum(axis=1) ** 0.5).sum() / size) ** 0.5)
 

@@ -43,15 +43,23 @@ class Result:
 def _silent(_stage: str, _seconds: float | None) -> None: ...
 
 
-def fit(mesh: str | Path | Polyhedron, config: Config, registry: Registry, progress: Progress = _silent) -> Result:
+def fit(
+    mesh: str | Path | Polyhedron,
+    config: Config,
+    registry: Registry,
+    progress: Progress = _silent,
+    *,
+    share: float = 1.0,
+) -> Result:
     """The smooth surface of a closed polyhedron, given as a file or as an object.
 
-    progress: called with the name of each stage at its start (seconds None) and at its end. Raises FormatError,
-    TopologyError, MapError, FitError or ConfigError, each a sentence with a next step.
+    progress: called with the name of each stage at its start (seconds None) and at its end; share: of the faces that
+    a fine picture needs. Raises FormatError, TopologyError, MapError, FitError or ConfigError, each a sentence with a
+    next step.
     """
     stages = Stages(registry, progress)
     config = config.checked(registry)
-    polyhedron = mesh if isinstance(mesh, Polyhedron) else stages("read", _read, Path(mesh), config, registry)
+    polyhedron = mesh if isinstance(mesh, Polyhedron) else stages("read", read_mesh, Path(mesh), config, registry)
     surface_type = stages("topology", require_closed_surface, polyhedron)
     require_density(config.output.refine, int((polyhedron.face_sizes - 2).sum()), config.places)
     unit, origin, scale = _normalised(oriented(without_unused_vertices(polyhedron)))
@@ -59,22 +67,23 @@ def fit(mesh: str | Path | Polyhedron, config: Config, registry: Registry, progr
     mapping = Mapping(unit, triangles, surface_type, config, stages)
     found = Approximations(mapping, config, stages).wanted()
     surface = replace(found.surface, origin=origin, scale=scale)
-    output = stages("tessellation", _tessellated, surface, config.output.refine)
+    output = stages("tessellation", _tessellated, surface, config.output.refine, share * _OUTPUT_FACES)
     require_told_by_ends(output, surface_type)
     inspection = stages("inspection", inspected, surface, output, config.output.refine is None)
     summary = report(surface, surface_type, unit, config, found, output, inspection, stages.seconds)
     return Result(surface, output, summary)
 
 
-def _tessellated(surface: OrbifoldSurface, refine: int | None) -> Polyhedron:
-    """Every triangle of the input cut alike, or the refined mesh cut so that pictures of it are fine."""
+def _tessellated(surface: OrbifoldSurface, refine: int | None, wanted: float) -> Polyhedron:
+    """Every triangle of the input cut alike, or the refined mesh cut so that it has about as many faces as wanted."""
     if refine is not None:
         return surface.tessellate(refine)
     faces = surface.triangulation.polyhedron.face_count
-    return surface.tessellate(max(1, round(math.sqrt(_OUTPUT_FACES / faces))), bisected=True)
+    return surface.tessellate(max(1, round(math.sqrt(wanted / faces))), bisected=True)
 
 
-def _read(path: Path, config: Config, registry: Registry) -> Polyhedron:
+def read_mesh(path: Path, config: Config, registry: Registry) -> Polyhedron:
+    """The polyhedron of a file, by the reader that the configuration names or the suffix."""
     return gate.read(path, registry, format=None if config.mesh.open else config.mesh.name)
 
 

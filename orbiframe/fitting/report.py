@@ -48,7 +48,7 @@ def report(
             "genus": surface_type.genus,
             "components": surface_type.components,
         },
-        "triangles": _cut_report(polyhedron),
+        "triangles": _cut_report(polyhedron, surface.refinement.coarse),
         "geometry": triangulation.orbifold.geometry.name,
         "group": {
             "source": triangulation.group,
@@ -113,10 +113,15 @@ def _distances_report(accuracy: Accuracy, surface: OrbifoldSurface) -> dict[str,
     } | {"normals": accuracy.normals}
 
 
-def _cut_report(polyhedron: Polyhedron) -> dict[str, Any]:
-    """How the faces of the input were cut into triangles, without new vertices."""
+def _cut_report(polyhedron: Polyhedron, triangles: Polyhedron) -> dict[str, Any]:
+    """How the faces of the input were cut into triangles."""
     larger = polyhedron.face_sizes[polyhedron.face_sizes > 3]
-    return {"faces_cut": len(larger), "diagonals": int((larger - 3).sum()), "rule": RULE if len(larger) else "none"}
+    return {
+        "faces_cut": len(larger),
+        "diagonals": int((larger - 3).sum()),
+        "points": len(triangles.vertices) - len(polyhedron.vertices),
+        "rule": RULE if len(larger) else "none",
+    }
 
 
 def _map_report(triangulation: Triangulation) -> dict[str, Any]:

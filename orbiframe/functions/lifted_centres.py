@@ -79,7 +79,7 @@ class LiftedCentres:
         reach = np.minimum(np.sqrt(self.support / 2), 1.0 if atlas.geometry.curvature > 0 else np.inf)
         start = np.ascontiguousarray(self.centres.x), self.centres.patch.astype(np.int32), reach
         discs = _half_sine(atlas, disc * _ROUNDING), _half_sine(atlas, passed * _ROUNDING)
-        patch, column, x = _walk(atlas.geometry.curvature, *_entries(atlas), *start, *discs)
+        patch, column, x = _leave_images(atlas.geometry.curvature, *_entries(atlas), *start, *discs)
         order = np.argsort(patch, kind="stable")
         begins = np.searchsorted(patch[order], np.arange(atlas.patch_count + 1))
         return Images(column[order].astype(np.intp), x[order]), begins
@@ -111,7 +111,7 @@ def _within(curvature, x0, x1, x2, a, b):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _walk(curvature, begins, leads, moves, x, patch, reach, disc, passed):  # type: ignore[no-untyped-def]
+def _leave_images(curvature, begins, leads, moves, x, patch, reach, disc, passed):  # type: ignore[no-untyped-def]
     """Breadth first from each centre: the patch, the centre and the place of every image that reaches a disc."""
     found_patch, found_column = np.empty(1024, dtype=np.int32), np.empty(1024, dtype=np.int32)
     found_x, count = np.empty((1024, 3)), 0

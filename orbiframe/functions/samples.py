@@ -27,7 +27,8 @@ class Samples:
     area: (n,), the area in space that each sample stands for in integrals of fairness; as the weights if not given;
     length: (n,), the length in space from which on the functions are to be fair, None for the distance between
     neighbouring functions; order: the order of the derivatives that are to be small between the values, 2 where the
-    samples are all that is known, 3 where they lie on a smooth surface. Raises FitError if the shapes do not fit, for a
+    samples are all that is known, 3 where they lie on a smooth surface; noise: the root mean square error of each
+    coordinate of these points, None where it is to be found from them. Raises FitError if the shapes do not fit, for a
     value that is not finite, and for another number that is negative or not finite.
     """
 
@@ -38,6 +39,7 @@ class Samples:
     area: Floats | None = None
     length: Floats | None = None
     order: int = 2
+    noise: float | None = None
 
     def __post_init__(self) -> None:
         count = len(self.points.patch)
@@ -62,9 +64,8 @@ class Samples:
         """Some of the samples, in the order of the indices `chosen`."""
         points = Points(self.points.patch[chosen], self.points.x[chosen])
         area, length = (None if numbers is None else numbers[chosen] for numbers in (self.area, self.length))
-        return Samples(
-            points, self.values[chosen], self.weights[chosen], self.stretch[chosen], area, length, self.order
-        )
+        numbers = self.values[chosen], self.weights[chosen], self.stretch[chosen]
+        return Samples(points, *numbers, area, length, self.order, self.noise)
 
 
 def _require(name: str, good: NDArray[np.bool_] | np.bool_, numbers: Floats, what: str) -> None:

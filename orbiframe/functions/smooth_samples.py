@@ -23,10 +23,11 @@ _SAGITTA = 0.002
 _FLAT = np.radians(3)
 
 
-def vertex_samples(triangulation: Triangulation, refinement: Bisection) -> Samples:
+def vertex_samples(triangulation: Triangulation, refinement: Bisection, noise: float | None = None) -> Samples:
     """The vertices of the coarse mesh alone, as points of a smooth surface; between them fairness of order three.
 
     A vertex counts like a third of the area of its triangles. The length of fairness is that of the facets about.
+    noise: the root mean square error of each coordinate of the vertices, where it is known.
     """
     mesh, coarse = triangulation.polyhedron, refinement.facets
     area, count = np.linalg.norm(vector_areas(coarse), axis=1), len(coarse.vertices)
@@ -35,7 +36,7 @@ def vertex_samples(triangulation: Triangulation, refinement: Bisection) -> Sampl
     weights[:count], values[:count] = _around(coarse, area / 3), coarse.vertices
     share = _around(mesh, np.linalg.norm(vector_areas(mesh), axis=1) / 3)
     length = _lengths(triangulation, refinement, _evened(coarse, area))[: len(mesh.vertices)]
-    return _fair(Samples(everywhere.points, values, weights, everywhere.stretch, share, length, 3))
+    return _fair(Samples(everywhere.points, values, weights, everywhere.stretch, share, length, 3, noise))
 
 
 def semi_smooth_samples(triangulation: Triangulation, refinement: Bisection, spacing: float) -> Samples:

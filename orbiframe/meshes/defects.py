@@ -72,12 +72,15 @@ def defects_of(polyhedron: Polyhedron) -> list[Defect]:
     return [defect for defect in found if defect is not None]
 
 
-def require_closed_surface(polyhedron: Polyhedron) -> SurfaceType:
-    """The surface type of a polyhedron that is one closed connected surface; raises TopologyError otherwise."""
+def require_closed_surface(polyhedron: Polyhedron, *, several: bool = False) -> SurfaceType:
+    """The surface type of a polyhedron that is one closed connected surface; raises TopologyError otherwise.
+
+    several: any number of closed surfaces will do.
+    """
     if polyhedron.face_count == 0:
         raise TopologyError("the mesh has no faces; give a closed polyhedron")
     fatal = [defect for defect in defects_of(polyhedron) if defect.fatal]
-    if fatal:
+    if fatal and not (several and all(defect.kind == "components" for defect in fatal)):
         reasons = "; ".join(f"{defect} ({defect.where})" for defect in fatal)
         advice = _advice(fatal) + (_SHARED_ENDS if _may_share_ends(polyhedron) else "")
         raise TopologyError(f"the mesh is not one closed connected surface: {reasons}; {advice}")

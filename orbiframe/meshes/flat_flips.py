@@ -59,13 +59,13 @@ class FlatFlips:
     def locate(self, face: Ints, barycentric: Floats) -> tuple[Ints, Floats]:
         """Points (n,) of triangles before, with barycentric coordinates (n, 3), in the triangles after."""
         place, weights = np.arange(self.before.face_count)[face], np.array(barycentric, dtype=np.float64)
-        _carry(place, weights, self.halfedge, self.crossing, self.before.face_count)
+        _follow(place, weights, self.halfedge, self.crossing, self.before.face_count)
         return place, weights
 
     def carried_back(self, steps: Floats) -> Floats:
         """Matrices (H, k, k) along the halfedges before from those along the halfedges after; both are products."""
         carried = np.array(steps, dtype=np.float64)
-        _undo(carried, self.halfedge)
+        _take_back(carried, self.halfedge)
         return carried
 
 
@@ -217,7 +217,7 @@ def _replay(tail, twin, same, halfedge):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _carry(place, weights, halfedge, crossing, faces):  # type: ignore[no-untyped-def]
+def _follow(place, weights, halfedge, crossing, faces):  # type: ignore[no-untyped-def]
     """Points follow the flips: those of the two triangles of a flip are spread anew over the two that it makes.
 
     With (1 - s) i + s j = (1 - t) k + t m a point of (i, j, k) is one of (m, k, i) or of (k, m, j): a multiple of that
@@ -256,7 +256,7 @@ def _carry(place, weights, halfedge, crossing, faces):  # type: ignore[no-untype
 
 
 @compiled
-def _undo(steps, halfedge):  # type: ignore[no-untyped-def]
+def _take_back(steps, halfedge):  # type: ignore[no-untyped-def]
     """Take the flips back, last first: the old edge gets the product along two sides of its quadrilateral."""
     size = steps.shape[1]
     forth, back = np.empty((size, size)), np.empty((size, size))

@@ -19,8 +19,8 @@ from orbiframe.triangulations.triangulation import Triangulation
 Floats = NDArray[np.float64]
 
 _ROUNDS = 6
-# From this energy on, half of what is asked for goes where the map changes; a sphere, of energy 0, is even everywhere.
-_HALF = 8.0
+# At this energy half of what is asked for goes where the map changes; shapes without thin parts stay even.
+_HALF = 150.0
 
 
 class Girth(NamedTuple):

@@ -17,7 +17,7 @@ FAIRING = {2: 0.003, 3: 0.001}
 
 
 class Energy(NamedTuple):
-    """The integral of factor |D^order f|^2 over the surface in space: length^(2 order) and the fairing are in `factor`.
+    """The integral of factor |D^order f|^2 over the surface in space: `factor` has length^(2 order).
 
     Order 2: D^2 f is the Laplacian; order 3: the gradient of the Laplacian. Those on X times stretch^(order / 2) are
     those on the surface. factor: (n,), for each sample, without the stretch.
@@ -37,23 +37,20 @@ class Energy(NamedTuple):
         return [jets[6] + jets[8], jets[9] + jets[11]]
 
 
-def energy_of(basis: Basis, samples: Samples, fairing: float | None) -> Energy | None:
-    """The energy that belongs to samples, None without fairing.
+def energy_of(basis: Basis, samples: Samples) -> Energy:
+    """The energy that belongs to samples, for a fairing of 1.
 
-    fairing: a pure number, None for the default of the order. Functions with one continuous derivative have no third
-    one, so that their energy is of order 2. Raises FitError if fairing needs derivatives that the basis does not know.
+    Functions with one continuous derivative have no third one, so that their energy is of order 2. Raises FitError for
+    a basis that does not know the derivatives that fairing needs.
     """
-    order = min(samples.order, 2 if basis.smoothness < 2 else 3)
-    amount = FAIRING[order] if fairing is None else fairing
-    if amount == 0:
-        return None
     if not isinstance(basis, DifferentiableBasis):
         raise FitError(
             f"{type(basis).__name__} does not know derivatives, which fairing needs; set fairing = 0 or choose "
             "another basis"
         )
+    order = min(samples.order, 2 if basis.smoothness < 2 else 3)
     length = np.full(len(samples.weights), spacing(basis, samples)) if samples.length is None else samples.length
-    return Energy(order, amount * samples.shares * length ** (2 * order))
+    return Energy(order, samples.shares * length ** (2 * order))
 
 
 def spacing(basis: Basis, samples: Samples) -> float:

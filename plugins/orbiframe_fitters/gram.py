@@ -10,7 +10,7 @@ from orbiframe.compiled import compiled
 
 Floats = NDArray[np.float64]
 
-_DENSE = 2.4e7  # numbers of which a dense matrix may have at most so many
+_DENSE = 1e8  # numbers of which a dense matrix may have at most so many
 
 
 class Gram:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
+import scipy.sparse
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from orbiframe import Basis, DifferentiableBasis, FitError, Fitter, Samples, UsageError
 from orbiframe.meshes import curve_order
-from orbiframe_fitters.energy import Energy, energy_of
+from orbiframe_fitters.cross_validation import Trial
+from orbiframe_fitters.energy import FAIRING, Energy, energy_of
 from orbiframe_fitters.gram import Gram
 from orbiframe_fitters.normal_equations import solved
 
@@ -26,8 +29,9 @@ class LeastSquares(Fitter):
     (k = 3) where the samples lie on a smooth surface. length^2 is the area of the surface in space per function unless
     the samples say otherwise, so that fairing is a pure number and the same for a mesh of any size.
 
-    fairing: how strongly ripples are damped, 0 is the plain fit; by default 0.003 between samples of a polyhedron and
-    0.001 between points of a smooth surface.
+    fairing: how strongly ripples are damped, 0 is the plain fit; by default 0.003 between samples of a polyhedron, and
+    between points of a smooth surface 0.001, or more if they are noisy: as much as cross-validation says, or as leaves
+    no larger residual than the noise that the samples state.
 
     Raises UsageError for a negative option, FitError if fairing needs derivatives that the basis does not know, for
     weights that are all zero, and if the samples do not determine all functions.
@@ -39,17 +43,43 @@ class LeastSquares(Fitter):
 
     def fit(self, basis: Basis, samples: Samples) -> Floats:
         """The coefficients (size, d); see the class."""
-        require_rows(basis, samples, self.fairing)
-        energy = energy_of(basis, samples, self.fairing)
-        gram, right = Gram(basis.size), np.zeros((basis.size, samples.values.shape[1]))
-        for part, chosen in chunks(samples):
-            jets = _jets(basis, part, energy)
-            gram.add(jets[0], part.weights)
-            right += jets[0].T @ (part.weights[:, None] * part.values)
-            if energy is not None:
-                for rows in energy.rows(jets):
-                    gram.add(rows, energy.weights(chosen, part.stretch))
-        return solved(gram.matrices()[0], right)
+        return linear_fit(basis, samples, self.fairing).coefficients
+
+
+class LinearFit(NamedTuple):
+    """The coefficients (size, d) of a linear fit, and the fairing that it took."""
+
+    coefficients: Floats
+    fairing: float
+
+
+def linear_fit(basis: Basis, samples: Samples, fairing: float | None) -> LinearFit:
+    """The linear least squares fit; without a given fairing as much as the samples ask for, see `LeastSquares`."""
+    require_rows(basis, samples, fairing)
+    energy = None if fairing == 0 else energy_of(basis, samples)
+    gram, stiff, right = Gram(basis.size), Gram(basis.size), np.zeros((basis.size, samples.values.shape[1]))
+    data = []
+    for part, chosen in chunks(samples):
+        jets = _jets(basis, part, energy)
+        gram.add(jets[0], part.weights)
+        right += jets[0].T @ (part.weights[:, None] * part.values)
+        if energy is not None:
+            for rows in energy.rows(jets):
+                stiff.add(rows, energy.weights(chosen, part.stretch))
+        counted = np.flatnonzero(part.weights > 0)
+        data.append((jets[0][counted], part.weights[counted], part.values[counted]))
+    matrix: Any = gram.matrices()[0]
+    if energy is None:
+        return LinearFit(solved(matrix, right), 0.0)
+    bend: Any = stiff.matrices()[0]
+    amount = FAIRING[energy.order] if fairing is None else fairing
+    if fairing is None and energy.order == 3:
+        rows, weights, values = zip(*data, strict=True)
+        trial = Trial(
+            csr_array(scipy.sparse.vstack(rows)), np.concatenate(weights), np.concatenate(values), matrix, bend
+        )
+        amount = trial.fairing(amount, samples.noise)
+    return LinearFit(solved(matrix + amount * bend, right), amount)
 
 
 def require_not_negative(fitter: str, **options: float | None) -> None:

@@ -12,10 +12,10 @@ from scipy.sparse import csr_array
 
 from orbiframe import Basis, DifferentiableBasis, Fitter, Points, Samples
 from orbiframe.functions import foot_step, moved
-from orbiframe_fitters.energy import Energy, energy_of, spacing
+from orbiframe_fitters.energy import FAIRING, Energy, energy_of, spacing
 from orbiframe_fitters.gram import Gram
-from orbiframe_fitters.least_squares import LeastSquares, chunks, require_not_negative
-from orbiframe_fitters.normal_equations import solved
+from orbiframe_fitters.least_squares import chunks, linear_fit, require_not_negative
+from orbiframe_fitters.normal_equations import nearly_solved, solved
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -27,6 +27,8 @@ _LONGEST_STEP = 0.3
 _MOST_STRETCH = 30.0
 # A step that leaves more than this share of the distance is the last one.
 _GAIN = 0.97
+# Up to so many functions the equations of a step are factored as a whole.
+_DIRECT = 1200
 
 
 class Schedule(NamedTuple):
@@ -66,17 +68,18 @@ class Sliding(Fitter):
 
     def fit(self, basis: Basis, samples: Samples) -> Floats:
         """The coefficients (size, d); see the class."""
-        first = LeastSquares(fairing=self.fairing).fit(basis, samples)
+        first = linear_fit(basis, samples, self.fairing)
         if samples.values.shape[1] != 3 or not isinstance(basis, DifferentiableBasis):
-            return first
-        slide = _Slide(basis, samples, self._schedules(basis, samples))
-        return slide.from_start(first, self.steps)
+            return first.coefficients
+        slide = _Slide(basis, samples, self._schedules(basis, samples, first.fairing))
+        return slide.from_start(first.coefficients, self.steps)
 
-    def _schedules(self, basis: Basis, samples: Samples) -> tuple[Schedule, ...]:
-        schedules = _SCHEDULES[min(samples.order, 2 if basis.smoothness < 2 else 3)]
-        if self.fairing is None:
-            return schedules
-        return tuple(schedule._replace(fairing=self.fairing) for schedule in schedules)
+    def _schedules(self, basis: Basis, samples: Samples, fairing: float) -> tuple[Schedule, ...]:
+        """Those of the order of the energy, or the fairing that is given or that noise asks for."""
+        order = min(samples.order, 2 if basis.smoothness < 2 else 3)
+        if self.fairing is None and fairing <= FAIRING[order]:
+            return _SCHEDULES[order]
+        return tuple(schedule._replace(fairing=fairing) for schedule in _SCHEDULES[order])
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +127,7 @@ class _Slide:
 
     def __init__(self, basis: DifferentiableBasis, samples: Samples, schedules: tuple[Schedule, ...]) -> None:
         self.basis, self.samples, self.schedules = basis, samples, schedules
-        self.energy = energy_of(basis, samples, 1.0)
+        self.energy = energy_of(basis, samples) if any(schedule.fairing for schedule in schedules) else None
         self.data = [
             part.take(np.flatnonzero(part.weights > 0)) for part, _ in chunks(samples) if (part.weights > 0).any()
         ]
@@ -205,7 +208,10 @@ class _Slide:
             stiff: Any = schedule.fairing * self._stiffness(coefficients, self.energy)
             right -= stiff @ coefficients
             blocks = [block + stiff if kind in (0, 3, 5) else block for kind, block in enumerate(blocks)]
-        return solved(_joined(blocks), right.T.reshape(-1, 1)).reshape(3, -1).T
+        rows = [[blocks[kind] for kind in line] for line in _KIND]
+        if self.basis.size > _DIRECT:
+            return nearly_solved(rows, right)
+        return solved(_joined(rows), right.T.reshape(-1, 1)).reshape(3, -1).T
 
     def _stiffness(self, coefficients: Floats, energy: Energy) -> Floats | csr_array:
         """The energy in the metric of the surface as it is."""
@@ -246,10 +252,9 @@ def _normals(jets: Floats) -> tuple[Floats, Floats]:
     return normal, np.nan_to_num(curvature, posinf=np.finfo(float).max)
 
 
-def _joined(blocks: list[Any]) -> Floats | csr_array:
-    """The matrix of three coordinates from its six blocks."""
-    rows = [[blocks[kind] for kind in line] for line in _KIND]
-    if isinstance(blocks[0], np.ndarray):
+def _joined(rows: list[list[Any]]) -> Floats | csr_array:
+    """The matrix of three coordinates from its blocks."""
+    if isinstance(rows[0][0], np.ndarray):
         return np.block(rows)
     return csr_array(scipy.sparse.block_array(rows))
 

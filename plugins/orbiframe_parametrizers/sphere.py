@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from orbiframe import Atlas, Geometry, MapError, Orbifold, Polyhedron, Triangulation, surface_type
 from orbiframe.groups import MarkedGroup
 from orbiframe.triangulations import crowding_of
-from orbiframe_parametrizers.advice import advice
+from orbiframe_parametrizers.advice import CROWDED, advice
 from orbiframe_parametrizers.circle_packing import packed
 from orbiframe_parametrizers.crowded_sphere import medoid_face, patched_sphere
 from orbiframe_parametrizers.developing import with_patch_radii
@@ -68,9 +68,16 @@ def sphere(
 
 
 def _least_distorted(attempts: Sequence[Triangulation]) -> Triangulation | None:
-    """The map with the least median angle distortion of those without a fold, None for none."""
+    """The map with the least median angle distortion of those without a fold, None for none.
+
+    One that has lost 13 digits comes after all others.
+    """
     embedded = [result for result in attempts if result.not_positive == 0]
-    return min(embedded, key=lambda result: float(np.median(result.angle_distortion)), default=None)
+
+    def rank(result: Triangulation) -> tuple[bool, float]:
+        return crowding_of(result).digits_lost >= CROWDED, float(np.median(result.angle_distortion))
+
+    return min(embedded, key=rank, default=None)
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from orbiframe import FormatError
 from orbiframe_polygons.faces import Place, ragged
 from orbiframe_polygons.ply_header import Element, Header, Property
-from orbiframe_polygons.text import Text, plain, table
+from orbiframe_polygons.text import Text, named, plain, table
 
 Array = NDArray[Any]
 Ints = NDArray[np.intp]
@@ -99,8 +99,8 @@ def _by_lines(text: Text, header: Header) -> Iterator[Table]:
     for element in header.elements:
         if element.rows > len(text) - row:
             raise FormatError(
-                f"{text.path}: {element.rows} rows of '{element.name}' are declared, but {len(text) - row} lines are "
-                "left; is the file cut short?"
+                f"{text.path}: {element.rows} rows of '{named(element.name)}' are declared, but "
+                f"{len(text) - row} lines are left; is the file cut short?"
             )
         yield _text_table(text.lines(row, row + element.rows), element)
         row += element.rows
@@ -159,8 +159,8 @@ def _from_bytes(path: Path, data: bytes, header: Header) -> Iterator[Table]:
     for element in header.elements:
         if element.rows * element.least_size > len(data) - at:
             raise FormatError(
-                f"{path}, byte {at}: {element.rows} rows of '{element.name}' are declared, but {len(data) - at} bytes "
-                "are left; is the file cut short?"
+                f"{path}, byte {at}: {element.rows} rows of '{named(element.name)}' are declared, but "
+                f"{len(data) - at} bytes are left; is the file cut short?"
             )
         found, at = _byte_table(path, data, header.order, element, at)
         yield found
@@ -238,8 +238,8 @@ def _row_starts(path: Path, data: bytes, order: str, element: Element, at: int) 
             at = len(data) + 1
         if at > len(data):
             raise FormatError(
-                f"{path}, byte {starts[-1]}: row {row} of '{element.name}' does not end inside the file, or has a list "
-                "of negative length"
+                f"{path}, byte {starts[-1]}: row {row} of '{named(element.name)}' does not end inside the file, or has "
+                "a list of negative length"
             )
         starts.append(at)
     return np.array(starts, dtype=np.intp)
@@ -289,11 +289,13 @@ def _positions(cursor: Ints, length: Ints, width: int) -> Ints:
 def _lengths(values: Array, element: Element, place: Place) -> Ints:
     bad = np.flatnonzero((values < 0) | (values != np.floor(values)) | (values > np.iinfo(np.int32).max))
     if len(bad):
-        raise FormatError(f"{place(int(bad[0]))}: found {values[bad[0]]:g} as the length of a list in '{element.name}'")
+        raise FormatError(
+            f"{place(int(bad[0]))}: found {values[bad[0]]:g} as the length of a list in '{named(element.name)}'"
+        )
     return values.astype(np.intp)
 
 
 def _require_room(element: Element, reached: Ints, end: Ints, place: Place) -> None:
     bad = np.flatnonzero(reached > end)
     if len(bad):
-        raise FormatError(f"{place(int(bad[0]))}: the row of '{element.name}' does not fit the header")
+        raise FormatError(f"{place(int(bad[0]))}: the row of '{named(element.name)}' does not fit the header")

@@ -10,7 +10,7 @@ from typing import NoReturn
 import numpy as np
 
 from orbiframe import FormatError
-from orbiframe_polygons.text import shown
+from orbiframe_polygons.text import named, shown
 
 ORDERS = {b"ascii": "", b"binary_little_endian": "<", b"binary_big_endian": ">"}
 KINDS = ("i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8")
@@ -92,7 +92,7 @@ class _Parser:
             self._refuse("the header has no line 'format'")
         for element in self._elements:
             if element.rows and not element.properties:
-                self._refuse(f"the element '{element.name}' has {element.rows} rows but no property")
+                self._refuse(f"the element '{named(element.name)}' has {element.rows} rows but no property")
         return self._order, self._elements
 
     def _statement(self, words: list[bytes]) -> None:
@@ -112,7 +112,7 @@ class _Parser:
 
     def _add_element(self, element: Element) -> None:
         if element.name in self._names:
-            self._refuse(f"the element '{element.name}' is declared twice")
+            self._refuse(f"the element '{named(element.name)}' is declared twice")
         self._names.add(element.name)
         self._elements.append(element)
         self._properties.clear()
@@ -122,7 +122,7 @@ class _Parser:
             self._refuse("a property stands before the first element")
         element = self._elements[-1]
         if added.name in self._properties:
-            self._refuse(f"the element '{element.name}' has the property '{added.name}' twice")
+            self._refuse(f"the element '{named(element.name)}' has the property '{named(added.name)}' twice")
         self._properties.add(added.name)
         element.properties.append(added)
 

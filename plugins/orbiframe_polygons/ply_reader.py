@@ -13,6 +13,7 @@ from orbiframe_polygons.faces import corners, offsets_of, require_colours, requi
 from orbiframe_polygons.ply_body import Table, tables
 from orbiframe_polygons.ply_header import parse
 from orbiframe_polygons.strips import RESTART, triangles_of_strips
+from orbiframe_polygons.text import named
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -56,7 +57,9 @@ def _columns(path: Path, table: Table, names: tuple[str, ...]) -> Floats | None:
         return None
     for name in names:
         if name in table.sizes:
-            raise FormatError(f"{path}: the property '{name}' of '{table.element.name}' is a list, not a number")
+            raise FormatError(
+                f"{path}: the property '{named(name)}' of '{named(table.element.name)}' is a list, not a number"
+            )
     values = np.stack([table.columns[name].astype(np.float64) for name in names], axis=1)
     require_finite(values, table.place)
     return values
@@ -95,7 +98,7 @@ def _list(path: Path, table: Table) -> str:
     for name in ("vertex_indices", "vertex_index"):
         if name in table.sizes:
             return name
-    raise FormatError(f"{path}: the element '{table.element.name}' has no list 'vertex_indices'")
+    raise FormatError(f"{path}: the element '{named(table.element.name)}' has no list 'vertex_indices'")
 
 
 def _colours(path: Path, table: Table) -> Floats | None:

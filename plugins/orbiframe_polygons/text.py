@@ -198,6 +198,11 @@ def _found_compiled(codes: Bytes) -> tuple[Ints, Ints, Ints, Ints]:
     return begin, end, number, words
 
 
+def named(name: str) -> str:
+    """A name of a file as it may stand in a sentence without quotes, if it is a plain one."""
+    return name if name.isascii() and name.isprintable() and len(name) <= 40 else shown(name.encode(errors="replace"))
+
+
 def shown(word: bytes) -> str:
     """A word of a file as it may stand in a sentence: quoted, decoded and not too long."""
     text = word[:40].decode("utf-8", errors="replace")

@@ -70,12 +70,14 @@ class _Archive:
             with zipfile.ZipFile(self._path) as archive, archive.open(name) as file:
                 data = file.read(self._left + 1)
         except KeyError as error:
-            raise FormatError(f"{self._path}: the archive has no part '{name}'; is it a 3MF file?") from error
+            raise FormatError(f"{self._path}: the archive has no part {name[:60]!r}; is it a 3MF file?") from error
         except UNSOUND as error:
             raise FormatError(f"{self._path}: this is no sound archive: {error}") from error
         self._left -= len(data)
         if self._left < 0:
-            raise FormatError(f"{self._path}: the part '{name}' swells beyond {GROWTH} times the file; it is not read")
+            raise FormatError(
+                f"{self._path}: the part {name[:60]!r} swells beyond {GROWTH} times the file; it is not read"
+            )
         return data
 
     def model_name(self) -> str:
@@ -114,7 +116,7 @@ class _Model:
         try:
             self._element(name, attributes, line)
         except KeyError as error:
-            raise FormatError(f"{self.path}, line {line}: the element '{name}' lacks {error}") from error
+            raise FormatError(f"{self.path}, line {line}: the element {name[:40]!r} lacks {error}") from error
 
     def _element(self, name: str, attributes: dict[str, str], line: int) -> None:
         now = self._now

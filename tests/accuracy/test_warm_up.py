@@ -11,22 +11,22 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-DATASETS = [path.stem for path in sorted((ROOT / "datasets").glob("*.off"))]
-BASES = ["gaussian", "ps2", "ps3", "ps6", "simplex", "dms", "clough-tocher", "argyris", "hybrid", "wendland"]
+MESHES = ["plate_genus2", "torus", "sphere", "klein_bottle", "projective_plane", "dodecahedron"]
+BASES = ["ps3", "ps6", "simplex", "dms", "clough-tocher", "argyris", "hybrid", "wendland"]
 
 USUAL = [
-    *(f"fit datasets/{name}.off -o out.ply --quiet" for name in DATASETS),
-    *(f"fit datasets/{name}.off -o out.ply --basis ps2 --quiet" for name in DATASETS),
-    *(f"fit datasets/plate_genus2_coarse.off -o out.ply --basis {basis} --quiet" for basis in BASES),
+    *(f"fit datasets/{name}.off -o out.ply --quiet" for name in MESHES),
+    *(f"fit datasets/{name}.off -o out.ply --basis ps2 --size 300 --quiet" for name in MESHES),
+    *(f"fit datasets/plate_genus2_coarse.off -o out.ply --basis {basis} --size 200 --quiet" for basis in BASES),
     "fit datasets/torus.off -o out.ply --basis tensor-bspline --quiet",
     "fit datasets/torus.off -o out.obj --basis ps2 --group lattice --quiet",
     "fit datasets/plate_genus2.off -o out.stl --group regular-polygon --quiet",
-    "fit datasets/plate_genus3.off -o out.ply --shape regular-faces --quiet",
+    "fit datasets/plate_genus2_coarse.off -o out.ply --shape regular-faces --quiet",
     "fit datasets/sphere.off -o out.vtu --basis ps2 --save out.npz --quiet",
-    "fit datasets/klein_bottle.off -o out.ply --basis ps2 --tolerance 0.001 --quiet",
+    "fit datasets/klein_bottle.off -o out.ply --basis ps2 --tolerance 0.01 --quiet",
     "fit datasets/dodecahedron.off -o out.ply --basis simplex --set basis.degree=3 --quiet",
     "fit datasets/cube.off -o out.ply --weld 0 --drop-degenerate --orient --triangulate --quiet",
-    "info datasets/plate_genus5.off --loops out.json",
+    "info datasets/plate_genus3.off --loops out.json",
     "convert datasets/cube.off out.obj",
     "draw datasets/torus.off --surface -o out.svg",
     "draw datasets/plate_genus2_coarse.off --cut -o out.svg",

@@ -5,17 +5,19 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-import time
 
 import pytest
 
+# Of the standard library too: it was 160. What they cost in seconds, `benchmarks/start.py` measures.
+MOST_MODULES = 200
 HEAVY = {"numpy", "scipy", "numba", "meshio", "open3d", "pydantic", "matplotlib", "pyvista", "vtk"}
 
 PROBE = """
 import json, sys
+before = set(sys.modules)
 from orbiframe.cli.main import main
 status = main({arguments!r})
-print(json.dumps([status, sorted({{name.partition(".")[0] for name in sys.modules}})]), file=sys.stderr)
+print(json.dumps([status, sorted(set(sys.modules) - before)]), file=sys.stderr)
 """
 
 
@@ -42,19 +44,11 @@ def loaded_by(*arguments: str) -> tuple[int, set[str]]:
 def test_the_start_is_light(arguments):
     status, modules = loaded_by(*arguments)
     assert status == 0
-    assert HEAVY & modules == set()
+    assert HEAVY & {name.partition(".")[0] for name in modules} == set()
+    assert len(modules) <= MOST_MODULES
 
 
 def test_the_probe_sees_a_heavy_command():
     _, modules = loaded_by("plugins", "--options", "--kind", "basis")
     assert "numpy" in modules
-
-
-def test_help_comes_at_once():
-    def seconds() -> float:
-        start = time.perf_counter()
-        subprocess.run([sys.executable, "-m", "orbiframe", "--help"], capture_output=True, check=True)
-        return time.perf_counter() - start
-
-    # The least of several runs, as other work on the machine can only add to it.
-    assert min(seconds() for _ in range(5)) < 0.3
+    assert len(modules) > MOST_MODULES

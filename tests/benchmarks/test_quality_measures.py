@@ -14,6 +14,8 @@ from quality.shapes import SPHERE
 from quality.skins import Skin
 from quality.table import tables
 
+pytestmark = pytest.mark.long
+
 
 def sphere(radius: float) -> Skin:
     mesh = charts.icosphere(24)

@@ -10,6 +10,8 @@ from quality.foot_points import foot_points
 from quality.shapes import SHAPES
 from quality.skins import Skin, measured_skin
 
+pytestmark = pytest.mark.long
+
 SHAPE = {shape.name: shape for shape in SHAPES}
 TETRAHEDRON = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3.0]])

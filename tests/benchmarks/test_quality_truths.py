@@ -10,6 +10,8 @@ from quality.shapes import BLOB, ELLIPSOID, SHAPES, TANGLE
 from orbiframe import surface_type
 from orbiframe.meshes import doubled_edges, triangulated
 
+pytestmark = pytest.mark.long
+
 RNG = np.random.default_rng(3)
 
 

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -113,6 +114,28 @@ def _no_fit(monkeypatch):
         (["-o", "a.ply", "--save", "absent/s"], 1, "there is no folder"),
         (["-o", "cube.off"], 2, "the input itself"),
         (["-o", "a.ply", "--report", "cube.off"], 2, "the input itself"),
+        (["-o", "a.ply", "--save", "./a.ply"], 2, "named by -o and by --save"),
+        (["-o", "a.ply", "--report", "r", "--save", "r"], 2, "named by --report and by --save"),
+        (["-o", "a.ply", "--config", "c.toml", "--report", "c.toml"], 2, "--config itself"),
+        (["-o", "a.ply", "--report", "/dev/null"], 1, "it is a device"),
+        (["-o", "a.ply", "--save", "/dev/null"], 1, "it is a device"),
+        (["-o", "pipe.ply"], 1, "it is a pipe"),
+        (["-o", "a.ply", "--report", "pipe.ply"], 1, "it is a pipe"),
+        (["-o", "a.ply", "--config", "pipe.ply"], 2, "this is a pipe"),
+        (["-o", "a.ply", "--size", "1000000000"], 2, "basis.size = 1000000000: that takes about 20000 GB"),
+        (["-o", "a.ply", "--size", "0"], 2, "basis.size = 0; give 1 to 100000"),
+        (["-o", "a.ply", "--size", "-3"], 2, "basis.size = -3; give 1 to 100000"),
+        (["-o", "a.ply", "--set", "basis.size=" + "9" * 40], 2, "about 10^40: that takes about 10^35 GB"),
+        (["-o", "a.ply", "--set", "basis.size=" + "9" * 3000], 2, "about 10^3000: that takes"),
+        (["-o", "a.ply", "--set", "basis.size=" + "9" * 9000], 2, "4300 digits"),
+        (["-o", "a.ply", "--set", "basis.size=" + "[" * 5000], 2, "nested too deep"),
+        (["-o", "a.ply", "--set", "basis.size=" + "[" * 40 + "]" * 40], 2, "nested more than 20 deep"),
+        (["-o", "a.ply", "--set", "basis.width=nan"], 2, "nan is no finite number"),
+        (["-o", "a.ply", "--tolerance", "inf"], 2, "inf is no finite number"),
+        (["-o", "a.ply", "--set", "x" * 10**6 + ".a=1"], 2, "no table named"),
+        (["-o", "a.ply", "--set", "basis." + "x" * 10**6 + "=1"], 2, "has no option"),
+        (["-o", "a.ply", "--set", "basis.name=" + "x" * 10**6], 2, "no basis named"),
+        (["-o", "a.ply", "--set", "basis.name=a\n[output]\nrefine=3"], 2, "no basis named"),
         (["-o", "a.ply", "--size", "many"], 2, "invalid int value: 'many'"),
         (["-o", "a.ply", "--refine", "0"], 2, "output.refine = 0"),
         (["-o", "a.ply", "--tolerance", "-1"], 2, "output.tolerance = -1"),
@@ -123,10 +146,13 @@ def _no_fit(monkeypatch):
 )
 def test_what_is_wrong_is_said_before_the_work(orbiframe, cube, tmp_path, monkeypatch, arguments, status, said):
     monkeypatch.chdir(tmp_path)
+    os.mkfifo("pipe.ply")
+    (tmp_path / "c.toml").write_text("[basis]\nsize = 30\n")
     before = cube.read_bytes()
     ran = orbiframe("fit", "cube.off", *arguments)
     assert ran.status == status
     assert said in ran.err
+    assert len(ran.err) < 3000
     assert ran.out == ""
     assert cube.read_bytes() == before
 
@@ -146,7 +172,7 @@ DATASETS = Path(__file__).parents[2] / "datasets"
 
 REPORT = {
     "surface": {"name": "closed, orientable, genus 2, 1 component", "euler_characteristic": -2},
-    "triangles": {"diagonals": 50, "faces_cut": 50, "rule": "the shortest"},
+    "triangles": {"diagonals": 50, "faces_cut": 50, "points": 0, "rule": "the shortest"},
     "geometry": "h2",
     "group": {"source": "mesh", "patches": 1, "relation_defect": 2.5e-15},
     "map": {
@@ -221,3 +247,45 @@ def test_a_report_is_written_whole_or_not_at_all(tmp_path):
     assert path.read_text() == first
     assert list(tmp_path.iterdir()) == [path]
     assert json_text({"a": (1, float("nan"))}).split() == ["{", '"a":', "[", "1,", "null", "]", "}"]
+
+
+@pytest.mark.parametrize("density", [600, 10**9, 10**40])
+def test_an_output_too_large_is_refused_with_its_number(orbiframe, cube, tmp_path, density):
+    ran = orbiframe("fit", cube, "-o", tmp_path / "a.ply", "--size", 30, "--refine", density)
+    assert ran.status == 2
+    assert "triangles of 12: that takes about" in ran.err
+    assert "GB of memory; give 1 to 577" in ran.err
+    assert [path.name for path in tmp_path.iterdir()] == ["cube.off"]
+
+
+def test_links_and_modes_of_report_and_surface_are_kept(orbiframe, cube, tmp_path):
+    places = [tmp_path / name for name in ("a.ply", "r.json", "s.npz")]
+    (tmp_path / "behind").mkdir()
+    for place in places:
+        behind = tmp_path / "behind" / place.name
+        behind.write_text("old")
+        behind.chmod(0o600)
+        place.symlink_to(behind)
+    out, report, save = places
+    assert (
+        orbiframe("fit", cube, "-o", out, "--report", report, "--save", save, "--size", 30, "--refine", 1).status == 0
+    )
+    for place in places:
+        assert place.is_symlink()
+        assert place.stat().st_size > 100
+        assert place.stat().st_mode & 0o777 == 0o600
+    assert sorted(path.name for path in (tmp_path / "behind").iterdir()) == ["a.ply", "r.json", "s.npz"]
+
+
+def test_a_bent_edge_comes_out_closed(orbiframe, cube, tmp_path):
+    """A vertex of valence 2: both faces at it, cut alone, get the same diagonal."""
+    lines = cube.read_text().splitlines()
+    lines[1] = "9 6 13"
+    lines.insert(10, "0.5 -0.3 -0.3")
+    lines[-6:] = ["4 0 1 3 2", "4 4 6 7 5", "5 0 8 4 5 1", "4 2 3 7 6", "5 0 2 6 4 8", "4 1 5 7 3"]
+    cube.write_text("\n".join(lines) + "\n")
+    triangles, surface = tmp_path / "t.off", tmp_path / "s.ply"
+    assert orbiframe("convert", "--triangulate", cube, triangles).status == 0
+    assert orbiframe("fit", cube, "-o", surface, "--size", 40).status == 0
+    for path in (triangles, surface):
+        assert "closed, orientable, genus 0, 1 component" in orbiframe("info", path).out

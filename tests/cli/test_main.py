@@ -5,7 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 import warnings
 from importlib.metadata import version
 
@@ -105,15 +104,15 @@ signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where the te
 def run(args, registry):
     print("at work", flush=True)
     time.sleep(60)
+    print("went on")
 info.run = run
 sys.exit(main.main(["info", "a.off"]))
 """
     process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stdout.readline() == "at work\n"
-    start = time.perf_counter()
     process.send_signal(signal.SIGINT)
-    _, error = process.communicate(timeout=30)
-    assert time.perf_counter() - start < 10
+    out, error = process.communicate()
+    assert out == ""
     assert process.returncode == 130
     assert error == "orbiframe: interrupted\n"
 

@@ -36,7 +36,8 @@ VTP = (
 DAE = (
     '<COLLADA><library_geometries><geometry id="g"><mesh><source id="p"><float_array id="a" count="12">'
     f'{" ".join(ROWS)}</float_array><technique_common><accessor source="#a" count="4" stride="3"/>'
-    '</technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices><triangles count="4"><input semantic="VERTEX" '
+    '</technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>'
+    '<triangles count="4"><input semantic="VERTEX" '
     f'source="#v" offset="0"/><p>{" ".join(FROM_0)}</p></triangles></mesh></geometry></library_geometries>'
     '<library_visual_scenes><visual_scene><node><instance_geometry url="#g"/></node></visual_scene>'
     "</library_visual_scenes></COLLADA>"

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 import tracemalloc
 
 import pytest
-from documents import ROOT
+from formats import ARRAYS, REGISTRY, torus
 from reader_switches import SWITCHES
 
 from orbiframe.files import gate
-
-sys.path.append(str(ROOT / "benchmarks"))
-from formats import ARRAYS, REGISTRY, torus
 
 
 def sizes(path) -> tuple[int, int]:

@@ -18,7 +18,7 @@ from orbiframe.components.options import options_of
 from orbiframe.components.registry import Registry
 from orbiframe.files import gate
 from orbiframe.fitting import mapping
-from orbiframe.fitting.config import OPEN_NAMES, STEPS, Config, Output
+from orbiframe.fitting.config import OPEN_NAMES, STEPS, Config, Data, Output
 from orbiframe.plugin import DEFAULT_MARKER
 
 REFERENCE = ROOT / "docs" / "reference"
@@ -87,9 +87,10 @@ def test_every_choice_of_weights_is_named(name, registry):
     assert set(get_args(weights.annotation)) <= set(re.findall(r"[\w-]+", told))
 
 
-def test_every_option_of_the_output_is_in_its_section():
-    rows = {unquoted(row[0]): row[1] for row in table_rows(section(REFERENCE / "config.md", "output"))}
-    assert rows == {option.name: str(option.default).lower() for option in options_of(Output)}
+@pytest.mark.parametrize(("table", "options"), [("output", Output), ("data", Data)])
+def test_every_option_of_the_output_and_of_the_data_is_in_its_section(table, options):
+    rows = {unquoted(row[0]): unquoted(row[1]) for row in table_rows(section(REFERENCE / "config.md", table))}
+    assert rows == {option.name: str(option.default).lower() for option in options_of(options)}
 
 
 def test_every_suffix_is_in_the_table_of_formats(registry):

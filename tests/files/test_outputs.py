@@ -7,7 +7,6 @@ import signal
 import stat
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -202,6 +201,7 @@ with output(Path(sys.argv[1])) as made:
     made.write_text("half")
     print("at work", flush=True)
     time.sleep(60)
+    print("went on")
 """
     command = [sys.executable, "-c", code, str(tmp_path / "file")]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
@@ -209,9 +209,7 @@ with output(Path(sys.argv[1])) as made:
         assert process.stdout.readline() == "at work\n"
         assert len(names(tmp_path)) == 1
         process.send_signal(number)
-        start = time.perf_counter()
-        process.wait(30)
-    assert time.perf_counter() - start < 10
+        assert process.stdout.read() == ""
     assert process.returncode == (-signal.SIGINT if number == signal.SIGINT else 128 + number)
     assert names(tmp_path) == []
 

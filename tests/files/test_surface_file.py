@@ -76,6 +76,13 @@ def test_flips_of_needles_are_saved(tmp_path: Path) -> None:
     refused(lambda arrays: arrays["flip_halfedge"].__setitem__(5, arrays["flip_halfedge"][6]), "the two halfedges are")
 
 
+@pytest.mark.parametrize("name", ["sphere.off", "torus.off"])
+def test_a_smooth_mesh_whose_vertices_were_moved_is_loaded(name: str, tmp_path: Path) -> None:
+    surface = fitted(name, SIZE).surface
+    save_surface(surface, tmp_path / "s.npz")
+    assert_same_bits(surface, load_surface(tmp_path / "s.npz", REGISTRY))
+
+
 def test_options_of_the_basis_and_place_in_space_are_kept(tmp_path: Path) -> None:
     mesh = mesh_of("torus")
     moved = mesh.with_vertices(mesh.vertices * 1e-3 + 50)

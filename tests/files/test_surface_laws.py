@@ -36,13 +36,23 @@ def test_numbers_that_no_law_binds_have_a_check_sum(saved: Path, tmp_path: Path,
 
 
 @pytest.mark.parametrize(
-    "entry", [{"weights": "others"}, {"group": "another"}, {"options": {"size": 60, "width": 1.4}}, {"more": 3}]
+    "entry",
+    [{"sha256": {}}, {"weights": "others"}, {"group": "another"}, {"options": {"size": 60, "width": 1.4}}, {"more": 3}],
 )
 def test_words_have_a_check_sum_too(saved: Path, tmp_path: Path, entry: dict[str, object]) -> None:
     def change(arrays: dict[str, np.ndarray]) -> None:
         arrays["about"] = np.array(json.dumps({**json.loads(str(arrays["about"])), **entry}))
 
     with pytest.raises(FormatError, match="the array 'about' breaks a law: it is what was saved"):
+        load_surface(changed(saved, tmp_path / "other.npz", change), REGISTRY)
+
+
+@pytest.mark.parametrize("sums", [None, 3, [], "x"])
+def test_sums_that_are_none(saved: Path, tmp_path: Path, sums: object) -> None:
+    def change(arrays: dict[str, np.ndarray]) -> None:
+        arrays["about"] = np.array(json.dumps({**json.loads(str(arrays["about"])), "sha256": sums}))
+
+    with pytest.raises(FormatError, match="the array 'about' breaks a law: it has a SHA-256 of every array"):
         load_surface(changed(saved, tmp_path / "other.npz", change), REGISTRY)
 
 
@@ -67,6 +77,23 @@ def scaled(name: str, factor: float) -> Change:
 
 def swapped(name: str) -> Change:
     return lambda arrays: arrays.update({name: arrays[name][::-1].copy()})
+
+
+def swapped_halves(arrays: dict[str, np.ndarray]) -> None:
+    """Two leaves changed for each other."""
+    child = arrays["child"] = arrays["child"].copy()
+    leaves = np.flatnonzero(arrays["side"] < 0)[:2]
+    child[leaves] = child[leaves[::-1]]
+
+
+def turned_triangles(arrays: dict[str, np.ndarray]) -> None:
+    """The coarse mesh with each triangle from another corner on, as sound as before."""
+    sides = np.arange(len(arrays["coarse_tail"]))
+    after = sides - sides % 3 + (sides + 1) % 3
+    before = sides - sides % 3 + (sides + 2) % 3
+    arrays["coarse_tail"] = arrays["coarse_tail"][after]
+    arrays["coarse_twin"] = before[arrays["coarse_twin"][after]]
+    arrays["coarse_same"] = arrays["coarse_same"][after]
 
 
 # What is changed in a file, the array that is named, and a word of its law; nothing but laws can tell.
@@ -102,7 +129,8 @@ BROKEN = {
     "sides turned": (put("fine_same", 0, True), "fine_same", "two twins"),
     "a face of four corners": (put("fine_offsets", 1, 4), "fine_offsets", "three corners"),
     "a vertex at infinity": (put("coarse_vertices", (0, 0), np.inf), "coarse_vertices", "finite"),
-    "a fine vertex elsewhere": (put("fine_vertices", (1500, 0), 0.3), "fine_vertices", "halves of coarse ones"),
+    "halves changed round": (swapped_halves, "child", "in common"),
+    "another coarse mesh": (turned_triangles, "fine_tail", "halves of coarse ones"),
     "a side that is none": (put("side", 0, 3), "side", "sides are"),
     "a leaf too many": (put("side", 0, -1), "child", "half of one other"),
     "halves of another": (put("child", 0, 7), "child", "half"),

@@ -48,7 +48,7 @@ def registry(monkeypatch):
             return [
                 Component("basis", "gaussian", f"{module.__name__}:Wavelet", ""),
                 Component("basis", "wavelet", f"{module.__name__}:Wavelet", ""),
-                Component("fitter", "least-squares", "math:dist", ""),
+                Component("fitter", "sliding", "math:dist", ""),
                 Component("fitter", "smooth", f"{module.__name__}:smooth", ""),
                 Component("parametrizer", "packed", f"{module.__name__}:packed", ""),
                 Component("parametrizer", "absent", "no_such_package_anywhere:f", ""),
@@ -68,7 +68,7 @@ def written(tmp_path: Path, text: str) -> Path:
 def test_defaults():
     config = Config.load()
     assert (config.mesh.name, config.group.name, config.map.name) == ("auto", "mesh", "auto")
-    assert (config.basis.name, config.fitter.name) == ("gaussian", "least-squares")
+    assert (config.basis.name, config.fitter.name) == ("gaussian", "sliding")
     assert config.mesh.open
     assert config.group.open
     assert config.map.open

@@ -84,8 +84,8 @@ def test_points_far_beyond_their_patch_see_all_that_reaches_them() -> None:
 
 def test_the_walk_is_walked_once(monkeypatch) -> None:
     made, walks = map_of("genus 4"), []
-    walk = lifted_centres._walk
-    monkeypatch.setattr(lifted_centres, "_walk", lambda *args: walks.append(1) or walk(*args))
+    walk = lifted_centres._leave_images
+    monkeypatch.setattr(lifted_centres, "_leave_images", lambda *args: walks.append(1) or walk(*args))
     lifted = centres_of(made, 30)
     for _ in range(3):
         list(reaching_pairs(lifted, Points(made.patch, made.points)))
@@ -97,12 +97,12 @@ def test_the_walk_visits_little_that_no_centre_reaches(monkeypatch) -> None:
     made = map_of("genus 16")
     lifted = centres_of(made, 40)
     counts = []
-    walk = lifted_centres._walk
+    walk = lifted_centres._leave_images
 
     def everywhere(curvature, begins, leads, moves, x, patch, reaches, disc, passed):
         counts.append(len(walk(curvature, begins, leads, moves, x, patch, reaches, passed, passed)[0]))
         return walk(curvature, begins, leads, moves, x, patch, reaches, disc, passed)
 
-    monkeypatch.setattr(lifted_centres, "_walk", everywhere)
+    monkeypatch.setattr(lifted_centres, "_leave_images", everywhere)
     images, _ = lifted._kept
     assert counts[0] < 2.5 * len(images.column)

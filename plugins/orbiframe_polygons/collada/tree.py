@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from orbiframe import FormatError
 from orbiframe_polygons.faces import whole
-from orbiframe_polygons.text import table
+from orbiframe_polygons.text import named, table
 from orbiframe_polygons.xml_events import parse
 
 DEPTH = 200
@@ -83,7 +83,7 @@ class Element:
 
     def refuse(self, complaint: str) -> NoReturn:
         """Raise FormatError with the line and the name."""
-        raise FormatError(f"{self.path}, line {self.line}: {self.name[:40]}: {complaint}")
+        raise FormatError(f"{self.path}, line {self.line}: {named(self.name)}: {complaint}")
 
 
 def tree(path: Path) -> Element:

@@ -17,7 +17,7 @@ from orbiframe_polygons.elements.numbered import Numbered, tell_passed
 from orbiframe_polygons.faces import whole
 from orbiframe_polygons.parts import Part, polyhedron_of, rotation
 from orbiframe_polygons.room import Budget
-from orbiframe_polygons.text import Text, plain, shown, table
+from orbiframe_polygons.text import Text, named, plain, shown, table
 
 Floats = NDArray[np.float64]
 
@@ -274,7 +274,7 @@ class _Model:
         return name.upper()
 
     def _refuse(self, card: Card, complaint: str) -> NoReturn:
-        raise FormatError(f"{self.path}, line {card.line}: *{card.name[:40]}: {complaint}")
+        raise FormatError(f"{self.path}, line {card.line}: *{named(card.name)}: {complaint}")
 
 
 def _own(block: Numbered) -> Part | None:

@@ -16,7 +16,7 @@ from orbiframe import FormatError, Polyhedron
 from orbiframe_polygons.elements.numbered import Numbered, tell_passed
 from orbiframe_polygons.faces import whole
 from orbiframe_polygons.parts import polyhedron_of
-from orbiframe_polygons.text import plain, shown, table
+from orbiframe_polygons.text import named, plain, shown, table
 
 WORD = re.compile(rb"(?<![\w.+-])[A-Za-z]\w*")
 FACES = {"Triangles": 3, "Quadrilaterals": 4}
@@ -125,7 +125,7 @@ def _text(path: Path, text: bytes) -> Iterator[Section]:
         stop = words[k + 1].start() if k + 1 < len(words) else len(text)
         width = _width(name, dimension)
         if width is None and name not in SINGLE and name != "End":
-            raise FormatError(f"{place}: {found[:40]}: {NOT_KNOWN}")
+            raise FormatError(f"{place}: {named(found)}: {NOT_KNOWN}")
         values = table(path, text[word.end() : stop], line=line).numbers()
         if name == "End":
             if len(values) or k + 1 < len(words):

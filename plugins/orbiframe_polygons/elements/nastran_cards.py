@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import NoReturn
 
 from orbiframe import FormatError
-from orbiframe_polygons.text import shown
+from orbiframe_polygons.text import named, shown
 
-REAL = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[dDeE]([+-]?\d+)|([+-]\d+))?", re.ASCII)
+REAL = re.compile(r"([+-]?(?:\d++\.?\d*+|\.\d++))(?:[dDeE]([+-]?\d++)|([+-]\d++))?", re.ASCII)
 INTEGER = re.compile(r"[+-]?\d{1,15}", re.ASCII)
 BULK = re.compile(r"BEGIN\s+BULK\b(.*)", re.IGNORECASE)
 INCLUDE = re.compile(r"\s*INCLUDE\b", re.IGNORECASE)
@@ -57,7 +57,7 @@ class Card:
 
     def refuse(self, complaint: str) -> NoReturn:
         """Raise FormatError with the line and the name."""
-        raise FormatError(f"{self.path}, line {self.line}: {self.name[:20]}: {complaint}")
+        raise FormatError(f"{self.path}, line {self.line}: {named(self.name)}: {complaint}")
 
 
 def cards(path: Path, text: str) -> Iterator[Card]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from orbiframe import FormatError, Polyhedron
 from orbiframe_polygons.faces import corners, offsets_of
-from orbiframe_polygons.text import Text, read_text, shown
+from orbiframe_polygons.text import Text, named, read_text, shown
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -100,15 +100,10 @@ def _head(text: Text) -> tuple[int, _Head]:
 
 def _set(text: Text, at: int, head: _Head, name: str, value: str) -> None:
     if name in head.zone:
-        text.refuse(at, f"{_plain(name)} stands twice in the zone")
+        text.refuse(at, f"{named(name)} stands twice in the zone")
     if name not in HARMLESS | KNOWN:
-        text.refuse(at, f"{_plain(name)} is not known, or changes what others mean; it is not read")
+        text.refuse(at, f"{named(name)} is not known, or changes what others mean; it is not read")
     head.zone[name] = value.strip('"').upper()
-
-
-def _plain(name: str) -> str:
-    """A name of a file as it may stand in a sentence."""
-    return name if name.isalnum() and len(name) < 40 else shown(name.encode())
 
 
 def _meant(text: Text, head: _Head) -> tuple[list[int], int, int, int]:
@@ -116,9 +111,8 @@ def _meant(text: Text, head: _Head) -> tuple[list[int], int, int, int]:
     names = [name.upper().split("[")[0].split("(")[0].strip().replace(" ", "") for name in head.variables]
     found = {AXES[name]: k for k, name in enumerate(names) if name in AXES}
     if not {0, 1} <= found.keys() or len(found) != sum(name in AXES for name in names):
-        raise FormatError(
-            f"{text.path}: the variables are {', '.join(head.variables)[:80] or 'missing'}, but X, Y and Z are required"
-        )
+        listed = ", ".join(map(named, head.variables))[:80]
+        raise FormatError(f"{text.path}: the variables are {listed or 'missing'}, but X, Y and Z are required")
     zone = head.zone
     kind = zone.get("ZONETYPE", zone.get("ET", "ordered"))
     if kind not in KINDS:

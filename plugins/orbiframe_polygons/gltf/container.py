@@ -17,6 +17,8 @@ from orbiframe_polygons.gltf.tree import Node, parsed
 # Magic number, version and size of the file; size and kind of each chunk.
 START, CHUNK = struct.Struct("<4sII"), struct.Struct("<II")
 JSON, BINARY = 0x4E4F534A, 0x004E4942
+# What the files of buffers are called; no other file is opened.
+BUFFERS = (".bin", ".glbin", ".glbuf")
 FORBIDDEN = set('/\\:?#*|<>"') | {chr(k) for k in range(32)}
 
 
@@ -100,8 +102,8 @@ def _embedded(node: Node, uri: str) -> bytes:
 def _beside(node: Node, uri: str, size: int) -> bytes:
     """The bytes of a file in the same folder, which is half of this format; a link is not followed."""
     name = unquote(uri)
-    if not name or name.startswith((".", "~")) or FORBIDDEN & set(name):
-        node.refuse(f"names {uri[:80]!r}; only buffers in its own folder are opened")
+    if name.startswith((".", "~")) or FORBIDDEN & set(name) or not name.lower().endswith(BUFFERS):
+        node.refuse(f"names {uri[:80]!r}; only buffers (.bin) in its own folder are opened")
     place = node.path.parent / name
     try:
         descriptor = os.open(place, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))

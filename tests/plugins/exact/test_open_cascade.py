@@ -10,33 +10,31 @@ import numpy as np
 import pytest
 from exact_surfaces import embedded, round_torus, surface_of
 from fitted import config, mesh_of
+from late import Late, require
 from scipy.spatial import cKDTree
 from spline_checks import quadrature
 
 from orbiframe import Registry
 from orbiframe.files import gate
 from orbiframe.fitting import pipeline
-from orbiframe.surfaces import PeriodicPatch, patches_of
+from orbiframe.surfaces import patches_of
 from orbiframe.testing import contract_tests
 
-pytest.importorskip("OCP", reason='Open CASCADE is the extra "orbiframe[cad]"')
+open_cascade, shapes = (Late(f"orbiframe_exact.{name}", needs="OCP.gp") for name in ("open_cascade", "shapes"))
+opened = Late("opened_shapes", needs="OCP.gp")
 
-from OCP.BRep import BRep_Tool
-from OCP.BRepCheck import BRepCheck_Analyzer
-from OCP.BRepGProp import BRepGProp
-from OCP.GProp import GProp_GProps
-from OCP.IGESControl import IGESControl_Reader
-from OCP.STEPControl import STEPControl_Reader
-from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
-from OCP.TopExp import TopExp_Explorer
-from OCP.TopoDS import TopoDS
-from orbiframe_exact.open_cascade import write_iges, write_step
-from orbiframe_exact.shapes import shape_of
+
+def write_step(path, surface):
+    open_cascade.write_step(path, surface)
+
+
+def write_iges(path, surface):
+    open_cascade.write_iges(path, surface)
+
 
 test_step = contract_tests("exporter", write_step, suffix=".step")
 test_iges = contract_tests("exporter", write_iges, suffix=".iges")
 
-WRITERS = {".step": (write_step, STEPControl_Reader), ".iges": (write_iges, IGESControl_Reader)}
 CASES = [
     ("tetrahedron", "ps2", {}),
     ("projective plane", "ps2", {}),
@@ -50,35 +48,7 @@ CASES = [
     ("Klein bottle", "tensor-bspline", {"degree": 3, "counts": (6, 6)}),
 ]
 each_case = pytest.mark.parametrize(("name", "family", "options"), CASES, ids=[f"{n} {f}" for n, f, _ in CASES])
-each_format = pytest.mark.parametrize("suffix", list(WRITERS))
-
-
-def reopened(surface, path):
-    write, reader = WRITERS[path.suffix]
-    write(path, surface)
-    opened = reader()
-    opened.ReadFile(str(path))
-    opened.TransferRoots()
-    return opened.OneShape()
-
-
-def area(shape) -> float:
-    found = GProp_GProps()
-    BRepGProp.SurfaceProperties_s(shape, found, 1e-12, False)
-    return found.Mass()
-
-
-def volume(shape) -> float:
-    found = GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, found, 1e-12, False, False)
-    return found.Mass()
-
-
-def faces(shape):
-    explorer = TopExp_Explorer(shape, TopAbs_FACE)
-    while explorer.More():
-        yield TopoDS.Face(explorer.Current())
-        explorer.Next()
+each_format = pytest.mark.parametrize("suffix", [".step", ".iges"])
 
 
 @each_case
@@ -88,18 +58,17 @@ def test_an_opened_file_is_the_surface(name, family, options, suffix, tmp_path):
     surface = surface_of(name, family, **{"size": 30, **options})
     surface = round_torus(surface) if name == "torus" else surface
     patches = patches_of(surface)
-    made, shape = shape_of(patches), reopened(surface, tmp_path / f"surface{suffix}")
-    assert BRepCheck_Analyzer(shape).IsValid()
-    assert area(shape) == pytest.approx(area(made), rel=1e-9)
+    made, shape = shapes.shape_of(patches), opened.reopened(surface, tmp_path / f"surface{suffix}")
+    assert opened.is_valid(shape)
+    assert opened.area(shape) == pytest.approx(opened.area(made), rel=1e-9)
     if surface.orbifold.orientable:
-        assert shape.ShapeType() == TopAbs_SOLID
-        assert volume(shape) == pytest.approx(patches.quadrilaterals().volume, rel=0.1)
-        assert volume(shape) > 0
+        assert opened.is_solid(shape)
+        assert opened.volume(shape) == pytest.approx(patches.quadrilaterals().volume, rel=0.1)
+        assert opened.volume(shape) > 0
     else:
-        assert shape.ShapeType() == TopAbs_SHELL
+        assert opened.is_shell(shape)
         assert shape.Closed() == (family != "tensor-bspline")
-    found = np.array([np.array(BRep_Tool.Surface_s(face).Value(*at).Coord()) for face, at in _middles(shape, patches)])
-    wanted = patches.quadrilaterals().evaluate(np.array([0.5]), np.array([0.5]))[:, 0]
+    found, wanted = opened.middles(shape, patches), opened.own_middles(patches.quadrilaterals())
     assert len(found) == len(wanted)
     distance, place = cKDTree(wanted).query(found)
     assert distance.max() < 1e-10
@@ -110,22 +79,10 @@ def test_a_round_sphere_has_the_area_of_a_sphere(tmp_path):
     """That of the spline by its own derivatives, without patches; near to that of the sphere."""
     surface = surface_of("tetrahedron", "ps4", size=120)
     ball = embedded(surface, lambda points: 2 * points.x)
-    found = area(reopened(ball, tmp_path / "ball.step"))
+    found = opened.area(opened.reopened(ball, tmp_path / "ball.step"))
     points, weights = quadrature(ball.basis, 24)
     assert found == pytest.approx(weights @ ball.curvature(points).element, rel=1e-9)
     assert found == pytest.approx(16 * np.pi, rel=2e-4)
-
-
-def _middles(shape, patches):
-    """Every face with parameters in the middle of each of its patches."""
-    if not isinstance(patches, PeriodicPatch):
-        yield from ((face, (0.5, 0.5)) for face in faces(shape))
-        return
-    (face,) = faces(shape)
-    surface = BRep_Tool.Surface_s(face)
-    u, v = (np.array(list(knots)) for knots in (surface.UKnots(), surface.VKnots()))
-    for s in (u[1:] + u[:-1]) / 2:
-        yield from ((face, (s, t)) for t in (v[1:] + v[:-1]) / 2)
 
 
 @cache
@@ -138,16 +95,16 @@ def genus(number: int):
 @pytest.mark.parametrize("number", [2, 5])
 def test_plates_open_as_solids_of_the_same_area(number, tmp_path):
     surface = genus(number)
-    shape = reopened(surface, tmp_path / "plate.step")
-    assert shape.ShapeType() == TopAbs_SOLID
-    assert area(shape) == pytest.approx(area(shape_of(patches_of(surface))), rel=1e-9)
-    assert volume(shape) > 0
+    shape = opened.reopened(surface, tmp_path / "plate.step")
+    assert opened.is_solid(shape)
+    assert opened.area(shape) == pytest.approx(opened.area(shapes.shape_of(patches_of(surface))), rel=1e-9)
+    assert opened.volume(shape) > 0
 
 
 @each_format
 def test_files_name_the_program_and_nothing_of_the_place(suffix, tmp_path):
     path = tmp_path / f"shape{suffix}"
-    WRITERS[suffix][0](path, surface_of("torus", "tensor-bspline", counts=(4, 4)))
+    opened.WRITERS[suffix](path, surface_of("torus", "tensor-bspline", counts=(4, 4)))
     text = path.read_text("ascii").replace("\n", "")
     assert "orbiframe" in text
     assert "1970" in text
@@ -177,6 +134,7 @@ sys.exit(main(["fit", "datasets/torus.off", "-o", sys.argv[1], "--basis", "ps2"]
 
 
 def test_an_exporter_is_found_by_its_suffix(tmp_path):
+    require("OCP.gp")
     registry = Registry.discover()
     surface = surface_of("torus", "tensor-bspline", counts=(4, 4))
     for name in ("a.stp", "a.STEP", "a.igs"):

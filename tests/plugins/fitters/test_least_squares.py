@@ -46,20 +46,6 @@ def test_minimises_what_it_says(name: str, fairing: float) -> None:
     np.testing.assert_allclose(found, expected, atol=1e-7 * np.abs(expected).max())
 
 
-@pytest.mark.parametrize("dense", [True, False])
-def test_refinement_takes_back_what_the_ridge_has_changed(dense: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A ridge r changes the solution by some r, and after a step of refinement by some r^2."""
-    if not dense:
-        monkeypatch.setattr(least_squares, "_DENSE", 1)
-    triangulation = surfaces.triangulated("torus")
-    basis = Gaussian(triangulation.orbifold, triangulation, size=10, width=0.8)
-    data = samples(basis, 600)
-    expected = by_lstsq(basis, data, 0.0)
-    for ridge, error in ((1e-7, 1e-10), (1e-5, 1e-7)):
-        found = LeastSquares(fairing=0.0, ridge=ridge).fit(basis, data)
-        assert np.abs(found - expected).max() < error * np.abs(expected).max()
-
-
 def test_sparse_and_dense_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     basis = space("octagon")
     data = samples(basis, 600)

@@ -150,3 +150,15 @@ def test_no_step_is_the_linear_fit() -> None:
     points = surfaces.random_points(basis.orbifold, 600, rng)
     data = Samples(points, rng.normal(size=(600, 3)), np.ones(600), np.ones(600))
     np.testing.assert_array_equal(Sliding(steps=0).fit(basis, data), LeastSquares().fit(basis, data))
+
+
+@pytest.mark.parametrize("make", [Gaussian, PowellSabin6])
+def test_steps_of_many_functions_lead_where_those_of_few_do(make, mapped, exact, monkeypatch) -> None:
+    """Equations solved by conjugate gradients to a few digits, and factored: nearly the same surface."""
+    from orbiframe_fitters import sliding
+
+    basis = make(mapped.orbifold, mapped, size=200)
+    direct = basis.values(exact.points, Sliding().fit(basis, exact))
+    monkeypatch.setattr(sliding, "_DIRECT", 0)
+    iterated = basis.values(exact.points, Sliding().fit(basis, exact))
+    assert np.abs(iterated - direct).max() < 0.05 * np.abs(direct - exact.values).max()

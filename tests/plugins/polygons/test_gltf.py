@@ -446,7 +446,8 @@ def test_a_buffer_beside_the_file_is_read(tmp_path):
     "uri",
     [
         "../secret.bin", "/etc/passwd", "%2e%2e/secret.bin", "..%2fsecret.bin", "..\\secret.bin", "sub/secret.bin",
-        "file:///etc/passwd", "http://localhost/a.bin", ".hidden", "~root", "", "a\0b", "C:a.bin",
+        "file:///etc/passwd", "http://localhost/a.bin", ".hidden", "~root", "", "secret.key", "points.bin.txt",
+        "a\0b.bin", "C:a.bin",
         "data:application/octet-stream,abc", "data:;base64,####",
     ],
 )  # fmt: skip

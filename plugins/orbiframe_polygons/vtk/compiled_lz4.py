@@ -1,0 +1,50 @@
+"""Blocks of LZ4 unpacked in a compiled loop; `lz4.py` does the same for small ones."""
+
+from __future__ import annotations
+
+from orbiframe.compiled import compiled
+
+
+@compiled(arrays=False)
+def fill(source, out):  # type: ignore[no-untyped-def]
+    """Fill `out` by sequences of literals and matches; whether it is full exactly where the source ends."""
+    at, to = 0, 0
+    while at < len(source):
+        token = int(source[at])
+        at += 1
+        count = token >> 4
+        if count == 15:
+            more = 255
+            while more == 255:
+                if at >= len(source):
+                    return False
+                more = int(source[at])
+                at += 1
+                count += more
+        if at + count > len(source) or to + count > len(out):
+            return False
+        for k in range(count):
+            out[to + k] = source[at + k]
+        at += count
+        to += count
+        if at == len(source):
+            return to == len(out)
+        if at + 2 > len(source):
+            return False
+        back = int(source[at]) + 256 * int(source[at + 1])
+        at += 2
+        count = 4 + (token & 15)
+        if count == 19:
+            more = 255
+            while more == 255:
+                if at >= len(source):
+                    return False
+                more = int(source[at])
+                at += 1
+                count += more
+        if back == 0 or back > to or to + count > len(out):
+            return False
+        for k in range(count):
+            out[to + k] = out[to + k - back]
+        to += count
+    return False

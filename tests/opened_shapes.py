@@ -1,0 +1,89 @@
+"""Shapes of Open CASCADE as its own readers find them in files, and what it says of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from OCP.BRep import BRep_Tool
+from OCP.BRepCheck import BRepCheck_Analyzer
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+from OCP.IGESControl import IGESControl_Reader
+from OCP.STEPControl import STEPControl_Reader
+from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
+from OCP.TopExp import TopExp_Explorer
+from OCP.TopoDS import TopoDS
+from orbiframe_exact.open_cascade import write_iges, write_step
+
+from orbiframe import OrbifoldSurface
+from orbiframe.surfaces import PeriodicPatch, QuadrilateralPatches, TrianglePatches
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+WRITERS = {".step": write_step, ".iges": write_iges}
+_READERS = {".step": STEPControl_Reader, ".iges": IGESControl_Reader}
+
+
+def reopened(surface: OrbifoldSurface, path: Path) -> Any:
+    """The shape of a file that a surface is written to."""
+    WRITERS[path.suffix](path, surface)
+    opened = _READERS[path.suffix]()
+    opened.ReadFile(str(path))
+    opened.TransferRoots()
+    return opened.OneShape()
+
+
+def is_valid(shape: Any) -> bool:
+    return bool(BRepCheck_Analyzer(shape).IsValid())
+
+
+def is_solid(shape: Any) -> bool:
+    return bool(shape.ShapeType() == TopAbs_SOLID)
+
+
+def is_shell(shape: Any) -> bool:
+    return bool(shape.ShapeType() == TopAbs_SHELL)
+
+
+def area(shape: Any) -> float:
+    found = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(shape, found, 1e-12, False)
+    return float(found.Mass())
+
+
+def volume(shape: Any) -> float:
+    found = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, found, 1e-12, False, False)
+    return float(found.Mass())
+
+
+def middles(shape: Any, patches: TrianglePatches | PeriodicPatch) -> Floats:
+    """The point in space in the middle of each of the patches, by the surfaces of the faces, (N, 3)."""
+    return np.array([BRep_Tool.Surface_s(face).Value(*at).Coord() for face, at in _middles(shape, patches)])
+
+
+def own_middles(patches: QuadrilateralPatches) -> Floats:
+    """The same by the patches themselves."""
+    return patches.evaluate(np.array([0.5]), np.array([0.5]))[:, 0]
+
+
+def _middles(shape: Any, patches: TrianglePatches | PeriodicPatch) -> Iterator[tuple[Any, tuple[float, float]]]:
+    """Every face with parameters in the middle of each of its patches."""
+    if not isinstance(patches, PeriodicPatch):
+        yield from ((face, (0.5, 0.5)) for face in _faces(shape))
+        return
+    (face,) = _faces(shape)
+    surface = BRep_Tool.Surface_s(face)
+    u, v = (np.array(list(knots)) for knots in (surface.UKnots(), surface.VKnots()))
+    for s in (u[1:] + u[:-1]) / 2:
+        yield from ((face, (s, t)) for t in (v[1:] + v[:-1]) / 2)
+
+
+def _faces(shape: Any) -> Iterator[Any]:
+    explorer = TopExp_Explorer(shape, TopAbs_FACE)
+    while explorer.More():
+        yield TopoDS.Face(explorer.Current())
+        explorer.Next()
