@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from orbiframe.words import MirrorWord, Relations
+from orbiframe.words.mirror_word import MirrorWord, Relations
 
 
 @pytest.mark.parametrize("text", ["ABC", "aBc", "Abc"])
