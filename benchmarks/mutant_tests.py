@@ -21,7 +21,14 @@ import pytest
 from mutant_trials import ROOT, SOURCES, Tree
 
 _RECORDING_LIMIT = 900.0
-LEFT_OUT = ("tests/docs/", "tests/architecture/", "tests/out_of_tree/", "tests/accuracy/", "tests/corpus/")
+LEFT_OUT = (
+    "tests/docs/",
+    "tests/architecture/",
+    "tests/out_of_tree/",
+    "tests/accuracy/",
+    "tests/corpus/",
+    "tests/benchmarks/",
+)
 
 
 class Recorder:
@@ -31,7 +38,7 @@ class Recorder:
 
     def __init__(self, root: Path) -> None:
         self.root, self.failed, self.send = f"{root}/", "", sys.stdout
-        self.entries: dict[str, Any] = {"collected": [], "tests": {}}
+        self.entries: dict[str, Any] = {"collected": [], "tests": {}, "failing": []}
         self._names: dict[int, tuple[Any, str]] = {}
         self._entered: set[str] = set()
 
@@ -39,6 +46,7 @@ class Recorder:
         """In the parent: keep what the child has sent."""
         if "failed" in entry:
             self.failed = self.failed or entry["failed"]
+            self.entries["failing"].append(entry["failed"])
         elif entry["test"]:
             self.entries["tests"][entry["test"]] = [entry["seconds"], entry["entered"]]
         else:
@@ -145,24 +153,24 @@ class Records:
                 continue
             recorder = Recorder(tree.root)
             outcome = tree.run(recorder, [file], _RECORDING_LIMIT)
-            self.files[file] = {"sum": total, "failed": outcome.failed, **recorder.entries}
+            self.files[file] = {"sum": total, **recorder.entries}
             self.path.write_text(json.dumps(self.files))
             yield f"{outcome.seconds:7.1f} s  {file}  {outcome.failed and 'FAILS: ' + outcome.failed}"
 
     def entering(self, file: str, functions: frozenset[str]) -> dict[str, float]:
-        """The tests of a file that enter one of the functions, with their seconds; all if its import does.
-
-        None if one of the file fails without a mutant.
-        """
-        record = self.files[file]
-        if record["failed"]:
-            return {}
-        everything = not functions.isdisjoint(record["collected"])
-        return {t: s for t, (s, entered) in record["tests"].items() if everything or not functions.isdisjoint(entered)}
+        """The tests of a file that enter one of the functions, with their seconds; all if its import does."""
+        everything = not functions.isdisjoint(self.files[file]["collected"])
+        tests = self._passing(file)
+        return {t: s for t, (s, entered) in tests.items() if everything or not functions.isdisjoint(entered)}
 
     def seconds(self, file: str) -> dict[str, float]:
-        """The seconds of every test of a file; of none where one fails without a mutant."""
-        return {} if self.files[file]["failed"] else {test: s for test, (s, _) in self.files[file]["tests"].items()}
+        """The seconds of every test of a file."""
+        return {test: s for test, (s, _) in self._passing(file).items()}
+
+    def _passing(self, file: str) -> dict[str, Any]:
+        """The tests of a file that do not fail as it is, without a mutant."""
+        record = self.files[file]
+        return {test: entry for test, entry in record["tests"].items() if test not in record["failing"]}
 
 
 @cache
@@ -210,7 +218,7 @@ def _files_of(module: str, names: Sequence[str]) -> Iterator[str]:
     if facade.exists():
         for node in ast.walk(ast.parse(facade.read_bytes())):
             if isinstance(node, ast.ImportFrom) and node.module and any(a.name in names for a in node.names):
-                yield from _files_of(node.module, ())
+                yield from _files_of(f"{module}.{node.module}" if node.level else node.module, ())
 
 
 @cache

@@ -41,7 +41,7 @@ from mutations import Mutation, mutations
 BUILD = ROOT / "build" / "mutants"
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.toml")
 # Seconds of tests, as recorded, that are tried on one mutant at most: beside its file, and elsewhere.
-BESIDE, ELSEWHERE = 40.0, 20.0
+BESIDE, ELSEWHERE = 20.0, 10.0
 STAGES = ("own tests", "folder", "elsewhere")
 PLUGINS = ("bases", "parametrizers", "fitters", "polygons", "exact")
 KERNEL = (

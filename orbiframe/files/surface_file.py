@@ -233,11 +233,12 @@ def _require_sums(arrays: Arrays, about: About) -> None:
     """Raise BrokenLaw for an array that is not the one that was saved."""
     if about["version"] == 1:
         return
-    sums = about["sha256"]
+    sums = about.get("sha256")
+    require(isinstance(sums, dict), "about", "it has a SHA-256 of every array")
     words = {key: value for key, value in about.items() if key != "sha256"}
-    require(sums["about"] == _sum_of_words(words), "about", "it is what was saved (SHA-256)")
+    require(sums.get("about") == _sum_of_words(words), "about", "it is what was saved (SHA-256)")
     for name, array in arrays.items():
-        require(sums[name] == _sum_of(array), name, "it is what was saved (SHA-256)")
+        require(sums.get(name) == _sum_of(array), name, "it is what was saved (SHA-256)")
 
 
 def _sum_of(array: NDArray[Any]) -> str:

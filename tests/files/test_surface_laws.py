@@ -36,13 +36,23 @@ def test_numbers_that_no_law_binds_have_a_check_sum(saved: Path, tmp_path: Path,
 
 
 @pytest.mark.parametrize(
-    "entry", [{"weights": "others"}, {"group": "another"}, {"options": {"size": 60, "width": 1.4}}, {"more": 3}]
+    "entry",
+    [{"sha256": {}}, {"weights": "others"}, {"group": "another"}, {"options": {"size": 60, "width": 1.4}}, {"more": 3}],
 )
 def test_words_have_a_check_sum_too(saved: Path, tmp_path: Path, entry: dict[str, object]) -> None:
     def change(arrays: dict[str, np.ndarray]) -> None:
         arrays["about"] = np.array(json.dumps({**json.loads(str(arrays["about"])), **entry}))
 
     with pytest.raises(FormatError, match="the array 'about' breaks a law: it is what was saved"):
+        load_surface(changed(saved, tmp_path / "other.npz", change), REGISTRY)
+
+
+@pytest.mark.parametrize("sums", [None, 3, [], "x"])
+def test_sums_that_are_none(saved: Path, tmp_path: Path, sums: object) -> None:
+    def change(arrays: dict[str, np.ndarray]) -> None:
+        arrays["about"] = np.array(json.dumps({**json.loads(str(arrays["about"])), "sha256": sums}))
+
+    with pytest.raises(FormatError, match="the array 'about' breaks a law: it has a SHA-256 of every array"):
         load_surface(changed(saved, tmp_path / "other.npz", change), REGISTRY)
 
 
