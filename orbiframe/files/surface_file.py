@@ -234,7 +234,8 @@ def _require_sums(arrays: Arrays, about: About) -> None:
     if about["version"] == 1:
         return
     sums = about.get("sha256")
-    require(isinstance(sums, dict), "about", "it has a SHA-256 of every array")
+    if not isinstance(sums, dict):
+        raise BrokenLaw("about", "it has a SHA-256 of every array")
     words = {key: value for key, value in about.items() if key != "sha256"}
     require(sums.get("about") == _sum_of_words(words), "about", "it is what was saved (SHA-256)")
     for name, array in arrays.items():
