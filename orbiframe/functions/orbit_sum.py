@@ -7,13 +7,14 @@ analytic function, with Hess c = (1 - K c) g in curvature K, so functions of c n
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.compiled.decorator import compiled
 from orbiframe.functions.lifted_centres import Images, LiftedCentres
+from orbiframe.functions.near_points import near_points
 from orbiframe.meshes.edge_paths import curve_order
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.planes.geometry import Geometry
@@ -47,9 +48,11 @@ def reaching_pairs(lifted: LiftedCentres, points: Points, *, slopes: bool = Fals
     """All pairs of a point and a lift of a centre whose versine is below the support of the centre, in blocks of rows.
 
     A support of 2 and more reaches every point of S^2. Every block belongs to one patch: the lifts of centres that are
-    seen from there meet a tree of balls over the points, whose test costs no root and no arc function.
+    seen from there meet a tree of balls over the points, whose test costs no root and no arc function. Points beyond
+    the disc of their patch are seen from a nearer one, see `near_points`.
     """
     geometry = lifted.orbifold.geometry
+    points, turn = near_points(lifted.orbifold, points)
     order = np.argsort(points.patch, kind="stable")
     patches, first = np.unique(points.patch[order], return_index=True)
     members = np.split(order, first[1:])
@@ -58,7 +61,14 @@ def reaching_pairs(lifted: LiftedCentres, points: Points, *, slopes: bool = Fals
     for unsorted, images in zip(members, lifted.seen_from(patches, radii[patches]), strict=False):
         rows = unsorted[curve_order(points.x[unsorted])]
         for part in np.split(rows, range(_BLOCK, len(rows), _BLOCK)):
-            yield _pairs_of_block(geometry, images, lifted.support[images.column], part, points.x[part], slopes)
+            pairs = _pairs_of_block(geometry, images, lifted.support[images.column], part, points.x[part], slopes)
+            yield pairs if turn is None or not slopes else _turned(pairs, turn)
+
+
+def _turned(pairs: Pairs, turn: Floats) -> Pairs:
+    """The same pairs with slopes along the frames of the points as they were given."""
+    row = np.repeat(pairs.rows, np.diff(pairs.start))
+    return replace(pairs, slope=np.einsum("pi,pij->pj", pairs.slope, turn[row]))
 
 
 def _pairs_of_block(geometry: Geometry, images: Images, support: Floats, rows: Ints, x: Floats, slopes: bool) -> Pairs:
