@@ -29,6 +29,13 @@ def fitted(name: str, size: int = 120) -> Result:
     return pipeline.fit(mesh_of(name), config(size), REGISTRY)
 
 
+@cache
+def fitted_linearly(name: str, size: int = 120) -> Result:
+    """The same by one linear fit: calm surfaces, whose edges are not drawn sharp."""
+    linear = config(size, "fitter.name=least-squares", "data.lift=false", "data.means=facets")
+    return pipeline.fit(mesh_of(name), linear, REGISTRY)
+
+
 def mesh_of(name: str) -> Path | Polyhedron:
     if name.endswith(".off"):
         return DATASETS / name

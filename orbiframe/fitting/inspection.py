@@ -43,7 +43,8 @@ def inspected(surface: OrbifoldSurface, output: Polyhedron, bisected: bool) -> I
     """The inspection of a surface by a mesh on it; bisected: the mesh cuts every triangle of the refined one alike."""
     fine = output if bisected else surface.tessellate(bisected=True)
     mesh = surface.refinement.coarse
-    inside, outside = _volume(mesh) * surface.scale**3, _volume(output)
+    placed = output.with_vertices((output.vertices - surface.origin) / surface.scale)
+    inside, outside = _volume(mesh), _volume(placed)
     ratio = None if output.same.any() or not abs(inside) > 0 else outside / inside
     return Inspection(folded_share(surface, fine), self_intersecting(mesh), self_intersecting(output), ratio)
 

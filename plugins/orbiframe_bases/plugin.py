@@ -93,6 +93,7 @@ def orbiframe_warm_up() -> list[str]:
     return [
         "fit double_torus.off -o out.ply --quiet --basis ps2",
         "fit prism.off -o out.ply --quiet --basis ps2",
+        "fit torus.off -o out.ply --quiet --basis ps2",
         "fit double_torus.off -o out.ply --quiet --basis bernstein",
         "fit double_torus.off -o out.ply --quiet --basis simplex",
         "fit double_torus.off -o out.ply --quiet --basis dms",

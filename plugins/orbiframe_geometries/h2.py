@@ -105,7 +105,8 @@ class H2(Geometry):
         """(d / sinh d) (y - x - c x) with c = cosh d - 1."""
         base = np.asarray(x, dtype=float)
         versine = self.versine(base, y)
-        sine = np.where(versine < _LARGE, np.sqrt(np.minimum(versine, _LARGE) * (versine + 2)), versine)
+        small = np.minimum(versine, _LARGE)
+        sine = np.where(versine < _LARGE, np.sqrt(small * (small + 2)), versine)
         ratio = np.where(sine == 0, 1.0, self.distance(base, y) / np.where(sine == 0, 1.0, sine))
         tangent = ratio[..., None] * self.chord(base, y) - (ratio * versine)[..., None] * base
         tangent[..., 0] = np.sum(base[..., 1:] * tangent[..., 1:], axis=-1) / base[..., 0]

@@ -8,7 +8,7 @@ import pytest
 
 from orbiframe import MapError
 from orbiframe.cli.report import json_text, summary, write_report
-from orbiframe.fitting import pipeline
+from orbiframe.fitting import parts, pipeline
 
 KEYS = {
     "surface": {"euler_characteristic", "orientable", "genus", "components"},
@@ -69,7 +69,7 @@ def test_options_with_a_name_of_their_own_win_over_set(orbiframe, cube, tmp_path
         asked.append((config.basis.name, config.basis.options["size"], config.output.refine))
         raise MapError("enough")
 
-    monkeypatch.setattr(pipeline, "fit", fit)
+    monkeypatch.setattr(parts, "fit", fit)
     given = ["--set", "basis.size=300", "--set", "output.refine=7", "--set", "basis.name=gaussian"]
     named = ["--size", "40", "--refine", "2", "--basis", "ps2"]
     for arguments in (given + named, named + given):
@@ -187,7 +187,13 @@ REPORT = {
         "adjacent": {"median": 1.25, "max": 2.0},
         "before": {"angle": {"median": 30.0, "max": 40.0}, "adjacent": {"median": 4.5, "max": 7.0}},
     },
-    "fit": {"basis": "gaussian", "size": 100, "samples": 900, "rms": 1e-3, "max": 5e-3},
+    "data": {"means": "facets", "reason": "asked for"},
+    "fit": {"basis": "gaussian", "size": 100, "samples": 900, "fitter": "sliding", "rms": 1e-3, "max": 5e-3},
+    "distance": {
+        key: {"rms": 1e-3, "max": 5e-3, "place": [1.0, 2.0, 3.0]}
+        for key in ("mesh_to_surface", "surface_to_mesh", "vertices_to_surface")
+    },
+    "notes": [],
     "output": {"vertices": 800, "faces": 1600},
     "seconds": {"map": 1.5, "fit": 0.25},
 }

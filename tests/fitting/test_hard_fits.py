@@ -41,6 +41,7 @@ def test_diagonals_are_told_and_a_cube_gets_no_warning() -> None:
     assert report["triangles"] == {
         "faces_cut": 7,
         "diagonals": 9,
+        "points": 0,
         "rule": "the shortest diagonal inside the face, again and again",
     }
     assert "9 diagonals in 7 faces: the shortest diagonal inside" in summary(report)

@@ -35,7 +35,7 @@ def test_the_first_centre_is_the_vertex_farthest_from_the_centroid(name: str) ->
 def test_supports_are_geometric_means_over_neighbouring_parts(name: str) -> None:
     """Twice half of the logarithm itself and half of the mean of its neighbours; the parts by Dijkstra's method."""
     made, reach, width = uneven(name), 3.0, 2.0
-    basis = Gaussian(made.orbifold, made, size=12, reach=reach, width=width)
+    basis = Gaussian(made.orbifold, made, size=12, reach=reach, width=width, grading=0.0)
     mesh, count = made.polyhedron, len(made.points)
     chosen = [int(np.abs(made.points - x).max(axis=1).argmin()) for x in basis.centres.x]
     length = np.linalg.norm(mesh.vertices[mesh.head] - mesh.vertices[mesh.tail], axis=1)
