@@ -60,8 +60,15 @@ def around(jets: Floats, radius: Floats | float, count: int = 8) -> Floats:
 
 
 def moved(orbifold: Orbifold, points: Points, step: Floats) -> Points:
-    """Points carried along geodesics of X by tangent vectors in their frames, (n, 2), and into the nearest patches."""
+    """Points carried along geodesics of X by tangent vectors in their frames, (n, 2), and into the nearest patches.
+
+    Vectors longer than the unit of length, in E^2 than the root of the area, are cut to it: no step of Newton means so
+    much, and numbers stay near the origin. A vector that is not finite moves nothing.
+    """
     geometry = orbifold.geometry
+    longest = 1.0 if geometry.curvature else float(np.sqrt(orbifold.area))
+    length = np.hypot(step[:, :1], step[:, 1:])
+    step = np.where(np.isfinite(length), step * (longest / np.maximum(length, longest)), 0.0)
     x = geometry.settle(geometry.exp(points.x, np.einsum("nij,nj->ni", geometry.frame(points.x), step)))
     return orbifold.settled(Points(points.patch, x))
 
