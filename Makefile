@@ -13,7 +13,7 @@ demo: $(VENV)/warm  ## one smooth surface from a mesh of genus 2
 warm-up: $(VENV)/warm  ## everything compiled, so that nothing waits for it later
 
 test: $(VENV)/developer  ## all tests, with Open3D, on all cores
-	$(BIN)/python -m pytest -m "long or not long" --numprocesses auto --dist worksteal
+	$(BIN)/python -m pytest -m "not fresh" --numprocesses auto --dist worksteal
 
 quick: $(VENV)/developer  ## the tests that take no time, on all cores
 	$(BIN)/python -m pytest --numprocesses auto --dist worksteal

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.fresh
+
 ROOT = Path(__file__).parents[2]
 MESHES = ["plate_genus2", "torus", "sphere", "klein_bottle", "projective_plane", "dodecahedron"]
 BASES = ["ps3", "ps6", "simplex", "dms", "clough-tocher", "argyris", "hybrid", "wendland"]
