@@ -57,15 +57,18 @@ def entries(report: Any, path: str = "") -> Iterator[tuple[str, Any]]:
             yield from entries(value, f"{path}.{key}")
 
 
-@pytest.mark.xfail(strict=False, reason="on symmetric meshes rounding chooses among sites that are equally far apart")
 @pytest.mark.parametrize("name", FITS)
 @pytest.mark.parametrize("kernel", ["Prescott", "Haswell", "SkylakeX", "Zen"])
-def test_reports_agree_to_nine_digits(kernel: str, name: str) -> None:
-    """Sizes, names and worst faces to the letter, numbers to 1e-9; a library without such kernels ignores the name."""
+def test_the_map_agrees_to_nine_digits_and_the_fit_to_a_tenth(kernel: str, name: str) -> None:
+    """Sizes and names to the letter. A library without such kernels ignores the name.
+
+    On symmetric meshes rounding chooses among sites that are equally far apart, so functions and errors may differ.
+    """
     ours, theirs = dict(entries(reports("")[name])), dict(entries(reports(kernel)[name]))
     assert ours.keys() == theirs.keys()
     for path, value in ours.items():
         if isinstance(value, float):
-            assert theirs[path] == pytest.approx(value, rel=1e-9, abs=1e-9), path
+            exact = path.startswith((".map", ".group", ".faces", ".surface", ".triangles"))
+            assert theirs[path] == pytest.approx(value, rel=1e-9 if exact else 0.1, abs=1e-9), path
         else:
             assert theirs[path] == value, path
