@@ -3,37 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
-import jax
-import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, Delaunay
 
 from orbiframe import Polyhedron
 from orbiframe.meshes import refine
+from quality.automatic import jax, jnp
 from quality.truths import Chart
 
+if TYPE_CHECKING:
+    from jax import Array
+
+    Place = Callable[[Array], Array]
+
 Floats = NDArray[np.float64]
-Place = Callable[[jax.Array], jax.Array]
 FULL = 2 * np.pi
 SQRT5 = 5**0.5
 
 
-def torus(u: jax.Array) -> jax.Array:
+def torus(u: Array) -> Array:
     """The torus of revolution with radii 3 and 1."""
     ring = 3 + jnp.cos(u[1])
     return jnp.stack([ring * jnp.cos(u[0]), ring * jnp.sin(u[0]), jnp.sin(u[1])])
 
 
-def figure_eight_bottle(u: jax.Array) -> jax.Array:
+def figure_eight_bottle(u: Array) -> Array:
     """A figure of eight that turns over once on its way round: a Klein bottle that passes through itself."""
     c, s = jnp.cos(u[0] / 2), jnp.sin(u[0] / 2)
     ring = 2.5 + c * jnp.sin(u[1]) - s * jnp.sin(2 * u[1])
     return jnp.stack([ring * jnp.cos(u[0]), ring * jnp.sin(u[0]), s * jnp.sin(u[1]) + c * jnp.sin(2 * u[1])])
 
 
-def lawson_bottle(u: jax.Array) -> jax.Array:
+def lawson_bottle(u: Array) -> Array:
     """Lawson's minimal Klein bottle tau(2, 1) of the 3-sphere, projected stereographically."""
     x, y = u[0] / 2, u[1]
     p = jnp.stack(
@@ -48,10 +52,10 @@ _AWAY = np.linalg.qr(np.column_stack([[-0.24917, -0.52261, -0.79506, 0.18078], n
 _AWAY *= np.sign(_AWAY[0] @ [-0.24917, -0.52261, -0.79506, 0.18078])
 
 
-def knotted_tube(u: jax.Array) -> jax.Array:
+def knotted_tube(u: Array) -> Array:
     """A tube of radius 0.4 about a trefoil knot."""
 
-    def core(t: jax.Array) -> jax.Array:
+    def core(t: Array) -> Array:
         return jnp.stack([jnp.sin(t) + 2 * jnp.sin(2 * t), jnp.cos(t) - 2 * jnp.cos(2 * t), -jnp.sin(3 * t)])
 
     velocity = jax.jacfwd(core)
@@ -61,7 +65,7 @@ def knotted_tube(u: jax.Array) -> jax.Array:
     return core(u[0]) + 0.4 * (jnp.cos(u[1]) * jnp.cross(binormal, tangent) + jnp.sin(u[1]) * binormal)
 
 
-def boy(u: jax.Array) -> jax.Array:
+def boy(u: Array) -> Array:
     """Boy's surface of Bryant and Kusner: the inverse of a minimal surface; u and its antipode -1/conj(u) are one."""
     w = u[0] + 1j * u[1]
     pole = w**6 + SQRT5 * w**3 - 1

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
-import jax
-import jax.numpy as jnp
 import numpy as np
 
-Field = Callable[[jax.Array], jax.Array]
+from quality.automatic import jax, jnp
+
+if TYPE_CHECKING:
+    from jax import Array
+
+    Field = Callable[[Array], Array]
 
 
 def torus(big: float, small: float) -> Field:
@@ -23,9 +27,9 @@ def ellipsoid(*axes: float) -> Field:
 
 def melted_tori(centres: list[tuple[float, float]], small: float = 0.4, blend: float = 10.0) -> Field:
     """Tori of radius 1 about these centres in the plane z = 0, melted together: a smooth least distance."""
-    places = jnp.array(centres)
+    places = np.array(centres)
 
-    def field(x: jax.Array) -> jax.Array:
+    def field(x: Array) -> Array:
         offset = x[:2] - places
         distance = jnp.hypot(jnp.hypot(offset[:, 0], offset[:, 1]) - 1, x[2])
         return -jax.nn.logsumexp(-blend * (distance - small)) / blend
@@ -33,22 +37,22 @@ def melted_tori(centres: list[tuple[float, float]], small: float = 0.4, blend: f
     return field
 
 
-def tanglecube(x: jax.Array) -> jax.Array:
+def tanglecube(x: Array) -> Array:
     """A quartic of genus 5: the sum of x^4 - 5 x^2 over the coordinates is -11.8."""
     return jnp.sum(x**4 - 5 * x**2) + 11.8
 
 
-def schwarz(x: jax.Array) -> jax.Array:
+def schwarz(x: Array) -> Array:
     """Eight chambers of the nodal surface of Schwarz' minimal surface P, smoothly cut off by a sphere."""
     return _within_ball(-jnp.sum(jnp.cos(x - np.pi)), x, 6.0)
 
 
-def _within_ball(value: jax.Array, x: jax.Array, radius: float, blend: float = 6.0) -> jax.Array:
+def _within_ball(value: Array, x: Array, radius: float, blend: float = 6.0) -> Array:
     ball = (x @ x / radius**2 - 1) * radius / 2
     return jax.nn.logsumexp(blend * jnp.stack([value, ball])) / blend
 
 
-def starfish(x: jax.Array) -> jax.Array:
+def starfish(x: Array) -> Array:
     """A body with five bent arms: Gaussians along segments, added up."""
     angles = 2 * np.pi * np.arange(5) / 5
     along = np.linspace(0.3, 1, 14)[None, :, None] * np.array([2.1, 1.6, 1.9, 1.7, 2.0])[:, None, None]
@@ -58,7 +62,7 @@ def starfish(x: jax.Array) -> jax.Array:
     return 0.4 - body - 0.6 * jnp.sum(jnp.exp(-jnp.sum((x - arms) ** 2, axis=1) / 0.18**2))
 
 
-def blob(x: jax.Array) -> jax.Array:
+def blob(x: Array) -> Array:
     """Four balls melted together."""
     places = jnp.array([[0, 0, 0], [1.3, 0.2, 0.1], [-0.7, 1.0, 0.2], [0.1, -0.5, 1.2]])
     radii = jnp.array([0.9, 0.6, 0.5, 0.7])

@@ -5,19 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
-import jax
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from orbiframe import Polyhedron
-from quality.fields import Field
+from quality.automatic import jax
 from quality.nets import surface_net
 
+if TYPE_CHECKING:
+    from jax import Array
+
+    from quality.fields import Field
+
 Floats = NDArray[np.float64]
-jax.config.update("jax_enable_x64", True)
 
 _STEPS = 12
 
@@ -114,7 +117,7 @@ class Level(Truth):
 class Chart(Truth):
     """The image of a plane of parameters; grid: parameters (n, 2) spread over it, in any order."""
 
-    place: Callable[[jax.Array], jax.Array]
+    place: Callable[[Array], Array]
     grid: Floats
     immersed: bool = False
 

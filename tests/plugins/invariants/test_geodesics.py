@@ -16,7 +16,7 @@ from reference_geometries import GEOMETRIES
 from orbiframe import GeometryError, Points, Word
 from orbiframe.groups import PolygonGroup, regular_polygon
 from orbiframe.planes import PreciseIsometry
-from orbiframe.testing.reference import reference_triangulations
+from orbiframe.testing.reference import RECIPES, reference_triangulations
 
 S2, E2, H2 = GEOMETRIES
 GROUPS = {
@@ -136,7 +136,7 @@ def test_two_patches_give_the_distances_of_one(name: str) -> None:
     assert min(found) < 1e-10
 
 
-@pytest.mark.parametrize("name", sorted(reference_triangulations()))
+@pytest.mark.parametrize("name", sorted(RECIPES))
 def test_atlases_of_meshes(name: str) -> None:
     """Atlases with many patches: symmetric, no longer than the edges of the mesh, and exp inverts log."""
     triangulation = reference_triangulations()[name]

@@ -18,16 +18,23 @@ from orbiframe import FormatError, PluginError, Polyhedron
 TETRAHEDRON = Polyhedron.from_faces(np.eye(4)[:, :3], [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])
 
 
+@pytest.fixture(scope="module")
 def obstacle() -> str | None:
-    """Why Open3D cannot be used here."""
+    """Why Open3D cannot be used here: asked in a process of its own, since it may take the process with it."""
     if importlib.util.find_spec("open3d") is None:
         return "open3d is not installed"
     tried = subprocess.run([sys.executable, "-c", "import open3d"], capture_output=True, text=True, check=False)
     return None if tried.returncode == 0 else f"open3d does not load: {tried.stderr.strip().splitlines()[-1]}"
 
 
-OBSTACLE = obstacle()
-needs_open3d = pytest.mark.skipif(OBSTACLE is not None, reason=str(OBSTACLE))
+@pytest.fixture
+def open3d(obstacle) -> None:
+    """Skips where Open3D cannot be used."""
+    if obstacle is not None:
+        pytest.skip(obstacle)
+
+
+needs_open3d = pytest.mark.usefixtures("open3d")
 
 
 @needs_open3d
@@ -54,11 +61,14 @@ def test_a_ply_that_crashes_open3d_is_an_error(tmp_path):
         read(path)
 
 
-@pytest.mark.skipif(OBSTACLE is None, reason="open3d works here")
-def test_where_open3d_is_missing_the_error_says_what_to_install(tmp_path):
-    (tmp_path / "a.glb").write_bytes(b"glTF")
+def test_where_open3d_is_missing_the_error_says_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "open3d", None)
+    monkeypatch.delitem(sys.modules, "orbiframe_open3d.triangles", raising=False)
+    triangles = importlib.import_module("orbiframe_open3d.triangles")
+    monkeypatch.delitem(sys.modules, "orbiframe_open3d.triangles")
+    (tmp_path / "a.fbx").write_bytes(b"")
     with pytest.raises(PluginError, match="install"):
-        read(tmp_path / "a.glb")
+        triangles.polyhedron_of(tmp_path / "a.fbx")
 
 
 def test_larger_faces_are_refused(tmp_path):
