@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from quality.nets import surface_net
 
 from orbiframe import Points, Polyhedron, Registry, Samples, Triangulation
 from orbiframe.functions.samples import coordinate_samples
@@ -62,32 +63,11 @@ def on_level(centres: Floats, x: Floats, steps: int = 20) -> Floats:
     return x
 
 
-def surface_net(centres: Floats, step: float) -> Polyhedron:
-    """Quadrilaterals about the edges of a grid that cross the level set, with a vertex for every cell that it meets."""
+def net(centres: Floats, step: float) -> Polyhedron:
+    """Quadrilaterals about the edges of a grid that cross the level set, with vertices on it."""
     reach = np.append(np.abs(centres).max(axis=0) + _BIG + _SMALL, _SMALL) + 3.4 * step
-    axes = [np.arange(-r, r + step, step) for r in reach]
-    place = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    value = np.stack([level(centres, plane)[0] for plane in place])
-    inside = value < 0
-    number, total, count = np.full(inside.shape, -1), np.zeros(place.shape), np.zeros(inside.shape)
-    rings = []
-    for axis in range(3):
-        crossed = np.argwhere(np.diff(inside, axis=axis))
-        ahead = crossed + np.eye(3, dtype=int)[axis]
-        a, b = value[tuple(crossed.T)], value[tuple(ahead.T)]
-        where = place[tuple(crossed.T)]
-        where[:, axis] += step * a / (a - b)
-        back = np.zeros((4, 3), dtype=int)
-        back[[0, 3], (axis + 1) % 3], back[[0, 1], (axis + 2) % 3] = 1, 1
-        ring = crossed[:, None] - back
-        ring[a > 0] = ring[a > 0][:, ::-1]
-        np.add.at(total, tuple(ring.reshape(-1, 3).T), np.repeat(where, 4, axis=0))
-        np.add.at(count, tuple(ring.reshape(-1, 3).T), 1)
-        rings.append(ring)
-    met = count > 0
-    number[met] = np.arange(met.sum())
-    faces = number[tuple(np.concatenate(rings).reshape(-1, 3).T)].reshape(-1, 4)
-    return Polyhedron.from_faces(on_level(centres, total[met] / count[met][:, None]), faces)
+    made = surface_net(lambda x: level(centres, x)[0], -reach, reach, step)
+    return made.with_vertices(on_level(centres, made.vertices))
 
 
 class Shape(NamedTuple):
@@ -102,7 +82,7 @@ class Shape(NamedTuple):
 def shape(name: str, registry: Registry, exact: bool) -> Shape:
     """exact: the samples inside of triangles are moved onto the level set too."""
     centres, step = SHAPES[name]
-    mesh = bisected(triangulated(oriented(surface_net(centres, step))), np.inf, simplicial=True).polyhedron
+    mesh = bisected(triangulated(oriented(net(centres, step))), np.inf, simplicial=True).polyhedron
     mesh = mesh.with_vertices(on_level(centres, mesh.vertices))
     made = registry.load("parametrizer", "harmonic")(mesh, registry.load("geometry", "h2")(), None)
     samples = coordinate_samples(made)

@@ -14,3 +14,4 @@ from .outputs import (
 )
 from .sandbox import confined_read as confined_read, confined_write as confined_write
 from .surface_file import load_surface as load_surface, save_surface as save_surface
+from .triangles_only import require_triangles as require_triangles

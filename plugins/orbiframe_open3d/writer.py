@@ -5,10 +5,8 @@ from __future__ import annotations
 import warnings
 from pathlib import Path
 
-import numpy as np
-
-from orbiframe import FormatError, Polyhedron
-from orbiframe.files import confined_write
+from orbiframe import Polyhedron
+from orbiframe.files import confined_write, require_triangles
 
 # Open3D takes address space for its threads.
 MEMORY = 2**33
@@ -21,12 +19,7 @@ def write(path: Path, polyhedron: Polyhedron, *, seconds: float = 60.0) -> None:
     that are no triangles, and where Open3D fails; PluginError where it is not installed or lacks a system library.
     Colours are left out, with a warning.
     """
-    larger = np.flatnonzero(polyhedron.face_sizes != 3)
-    if len(larger):
-        raise FormatError(
-            f"{path}: this format holds triangles only, but face {larger[0]} has {polyhedron.face_sizes[larger[0]]} "
-            f"corners ({len(larger)} such faces); write OFF, OBJ or PLY, or use convert --triangulate"
-        )
+    require_triangles(path, polyhedron)
     if any(table is not None for table in (polyhedron.colors, polyhedron.face_colors)):
         warnings.warn(f"{path.name}: colours are left out; PLY keeps them", stacklevel=2)
     confined_write("orbiframe_open3d.triangles:save", path, polyhedron, seconds=seconds, memory=MEMORY)

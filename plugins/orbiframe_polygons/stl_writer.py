@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import FormatError, Polyhedron
+from orbiframe.files import require_triangles
 from orbiframe_polygons.lines import columns_of, save, shaped_text
 from orbiframe_polygons.loss import tell_loss
 from orbiframe_polygons.stl_reader import RECORD
@@ -31,7 +32,7 @@ def write(path: Path, polyhedron: Polyhedron, *, ascii: bool = False) -> None:
     triangles, and where corners of a triangle are equal or infinite in float32. Colours and vertex normals are left
     out, with a warning.
     """
-    _require_triangles(path, polyhedron)
+    require_triangles(path, polyhedron, "STL")
     tell_loss(path, "colours", polyhedron.colors is not None or polyhedron.face_colors is not None)
     tell_loss(path, "normals of vertices", polyhedron.normals is not None)
     if ascii:
@@ -41,15 +42,6 @@ def write(path: Path, polyhedron: Polyhedron, *, ascii: bool = False) -> None:
     blocks = [_records(path, polyhedron, first).tobytes() for first in range(0, polyhedron.face_count, BLOCK)]
     count = polyhedron.face_count.to_bytes(4, "little")
     path.write_bytes(b"".join([b"orbiframe: binary STL".ljust(80), count, *blocks]))
-
-
-def _require_triangles(path: Path, polyhedron: Polyhedron) -> None:
-    larger = np.flatnonzero(polyhedron.face_sizes != 3)
-    if len(larger):
-        raise FormatError(
-            f"{path}: STL holds triangles only, but face {larger[0]} has {polyhedron.face_sizes[larger[0]]} corners "
-            f"({len(larger)} such faces); write OFF, OBJ or PLY, or triangulate it first (convert --triangulate)"
-        )
 
 
 def _records(path: Path, polyhedron: Polyhedron, first: int) -> NDArray[np.void]:

@@ -6,9 +6,8 @@ import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
-
-from orbiframe import FormatError, Polyhedron
+from orbiframe import Polyhedron
+from orbiframe.files import require_triangles
 from orbiframe_polygons.lines import columns_of, shaped_text
 from orbiframe_polygons.loss import tell_loss
 from orbiframe_polygons.threemf_reader import MODEL, RELATIONS
@@ -32,12 +31,7 @@ def write(path: Path, polyhedron: Polyhedron) -> None:
 
     Raises FormatError for faces that are no triangles. Normals and colours are left out, with a warning.
     """
-    larger = np.flatnonzero(polyhedron.face_sizes != 3)
-    if len(larger):
-        raise FormatError(
-            f"{path}: 3MF holds triangles only, but face {larger[0]} has {polyhedron.face_sizes[larger[0]]} corners "
-            f"({len(larger)} such faces); write OFF, OBJ or PLY, or triangulate it first (convert --triangulate)"
-        )
+    require_triangles(path, polyhedron, "3MF")
     tell_loss(path, "colours", polyhedron.colors is not None or polyhedron.face_colors is not None)
     tell_loss(path, "normals of vertices", polyhedron.normals is not None)
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.meshes import clusters, first_of_each
+
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Points = NDArray[np.floating[Any]]
@@ -27,17 +29,8 @@ def welded(corners: Points) -> tuple[Floats, Ints]:
 
 def _sorted(corners: Points) -> tuple[Points, Ints]:
     points = corners.reshape(-1, 3) + corners.dtype.type(0)
-    order = np.lexsort(points.T)
-    ordered = points[order]
-    fresh = np.ones(len(points), dtype=np.bool_)
-    fresh[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
-    group = np.empty(len(points), dtype=np.intp)
-    group[order] = np.cumsum(fresh) - 1
-    # lexsort is stable, so the first of each group is the first that occurs.
-    first = order[fresh]
-    rank = np.empty(len(first), dtype=np.intp)
-    rank[np.argsort(first)] = np.arange(len(first))
-    return points[np.sort(first)], rank[group]
+    label = clusters(points.astype(np.float64))
+    return points[first_of_each(label)], label
 
 
 def _hashed(corners: Points) -> tuple[Points, Ints]:

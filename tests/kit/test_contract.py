@@ -13,19 +13,7 @@ from orbiframe.testing import Lab, component_laws, contract_tests, laws_of
 from orbiframe.testing.check import check, equipments
 from orbiframe.testing.kit import bound, has_laws, tried
 
-LAWFUL_KINDS = (
-    "geometry",
-    "marker",
-    "group",
-    "parametrizer",
-    "optimizer",
-    "basis",
-    "fitter",
-    "reader",
-    "writer",
-    "exporter",
-    "picture",
-)
+LAWFUL_KINDS = tuple(kind for kind in KINDS if kind != "command")
 REGISTRY = Registry.discover()
 DECLARED = [component for component, _ in REGISTRY.declarations()]
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import FormatError, Polyhedron
+from orbiframe.files import require_triangles
 from orbiframe_polygons.gltf.container import BINARY, CHUNK, JSON, START
 from orbiframe_polygons.loss import tell_loss
 
@@ -55,12 +56,7 @@ def write(path: Path, polyhedron: Polyhedron) -> None:
 
 
 def _require_writable(path: Path, polyhedron: Polyhedron) -> None:
-    larger = np.flatnonzero(polyhedron.face_sizes != 3)
-    if len(larger):
-        raise FormatError(
-            f"{path}: glTF holds triangles only, but face {larger[0]} has {polyhedron.face_sizes[larger[0]]} corners "
-            f"({len(larger)} such faces); write OFF, OBJ or PLY, or triangulate it first (convert --triangulate)"
-        )
+    require_triangles(path, polyhedron, "glTF")
     if np.abs(polyhedron.vertices).max(initial=0) > LARGEST:
         raise FormatError(f"{path}: glTF holds numbers to {LARGEST:.2g}, but a coordinate is larger; scale the mesh")
 

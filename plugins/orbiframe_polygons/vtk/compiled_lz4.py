@@ -4,6 +4,21 @@ from __future__ import annotations
 
 from orbiframe.compiled import compiled
 
+_ENDLESS = 2**60
+
+
+@compiled(arrays=False)
+def _longer(source, at, count):  # type: ignore[no-untyped-def]
+    """Where a length that goes on after its first half byte ends, and the length; past the source: no length."""
+    more = 255
+    while more == 255:
+        if at >= len(source):
+            return at, _ENDLESS
+        more = int(source[at])
+        at += 1
+        count += more
+    return at, count
+
 
 @compiled(arrays=False)
 def fill(source, out):  # type: ignore[no-untyped-def]
@@ -14,13 +29,7 @@ def fill(source, out):  # type: ignore[no-untyped-def]
         at += 1
         count = token >> 4
         if count == 15:
-            more = 255
-            while more == 255:
-                if at >= len(source):
-                    return False
-                more = int(source[at])
-                at += 1
-                count += more
+            at, count = _longer(source, at, count)
         if at + count > len(source) or to + count > len(out):
             return False
         for k in range(count):
@@ -35,13 +44,7 @@ def fill(source, out):  # type: ignore[no-untyped-def]
         at += 2
         count = 4 + (token & 15)
         if count == 19:
-            more = 255
-            while more == 255:
-                if at >= len(source):
-                    return False
-                more = int(source[at])
-                at += 1
-                count += more
+            at, count = _longer(source, at, count)
         if back == 0 or back > to or to + count > len(out):
             return False
         for k in range(count):

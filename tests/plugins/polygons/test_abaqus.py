@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from orbiframe_polygons.elements.abaqus_reader import read
 from small_meshes import CUBE, QUADS, lists, volume
+from written import written
 
 from orbiframe import FormatError
 
@@ -24,9 +25,7 @@ def assembly(*instances: str, parts: str = PART) -> str:
 
 
 def of(tmp_path, content: str):
-    path = tmp_path / "a.inp"
-    path.write_text(content)
-    return path
+    return written(tmp_path / "a.inp", content)
 
 
 @pytest.mark.parametrize(

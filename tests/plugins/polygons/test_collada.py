@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from orbiframe_polygons.collada.reader import read
 from small_meshes import CUBE, QUADS, TRIANGLES, lists, volume, words
+from written import written
 
 from orbiframe import FormatError
 
@@ -37,9 +38,7 @@ def scene(nodes: str = NODE, *, geometry: str | None = None, asset: str = "", mo
 
 
 def of(tmp_path, content: str):
-    path = tmp_path / "a.dae"
-    path.write_text(content)
-    return path
+    return written(tmp_path / "a.dae", content)
 
 
 def primitive(name: str, lists_: list[str], count: int) -> str:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from orbiframe_polygons.elements.gmsh_reader import read
 from small_meshes import CUBE, QUADS, TRIANGLES, lists, words
+from written import written
 
 from orbiframe import FormatError
 
@@ -38,9 +39,7 @@ V41 = (
 
 
 def of(tmp_path, content: str | bytes):
-    path = tmp_path / "a.msh"
-    path.write_bytes(content.encode() if isinstance(content, str) else content)
-    return path
+    return written(tmp_path / "a.msh", content)
 
 
 @pytest.mark.parametrize("content", [V1, V2, V40, V41, V2.replace("\n", "\r\n"), V41.replace(" ", "  ")])

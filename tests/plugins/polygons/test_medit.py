@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from orbiframe_polygons.elements.medit_reader import read
 from small_meshes import CUBE, QUADS, TRIANGLES, lists, words
+from written import written
 
 from orbiframe import FormatError
 
@@ -30,9 +31,7 @@ MMG = "".join(
 
 
 def of(tmp_path, content: str | bytes, suffix: str = ".mesh"):
-    path = tmp_path / f"a{suffix}"
-    path.write_bytes(content.encode() if isinstance(content, str) else content)
-    return path
+    return written(tmp_path / f"a{suffix}", content)
 
 
 @pytest.mark.parametrize(

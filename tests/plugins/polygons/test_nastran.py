@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from orbiframe_polygons.elements.nastran_reader import read
 from small_meshes import CUBE, QUADS, lists
+from written import written
 
 from orbiframe import FormatError
 
@@ -20,9 +21,7 @@ LONG = "".join(f"{'GRID*':<8}{k + 1:<16}{'':<16}{x:<16}{y:<16}\n{'*':<8}{z:<16}\
 
 
 def of(tmp_path, content: str):
-    path = tmp_path / "a.bdf"
-    path.write_text(content, newline="")
-    return path
+    return written(tmp_path / "a.bdf", content)
 
 
 @pytest.mark.parametrize(

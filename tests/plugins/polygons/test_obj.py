@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from orbiframe_polygons.obj_reader import read
 from orbiframe_polygons.obj_writer import write
+from written import written
 
 from orbiframe import FormatError, Polyhedron
 from orbiframe.testing import contract_tests
@@ -17,9 +18,7 @@ TETRAHEDRON = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
 
 
 def of(tmp_path, content: str):
-    path = tmp_path / "mesh.obj"
-    path.write_bytes(content.encode())
-    return path
+    return written(tmp_path / "mesh.obj", content)
 
 
 @pytest.mark.parametrize(

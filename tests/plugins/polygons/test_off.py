@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from orbiframe_polygons.off_reader import read
 from orbiframe_polygons.off_writer import write
+from written import written
 
 from orbiframe import FormatError, Polyhedron
 from orbiframe.testing import contract_tests
@@ -18,9 +19,7 @@ TETRAHEDRON = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
 
 
 def of(tmp_path, content: str | bytes):
-    path = tmp_path / "mesh.off"
-    path.write_bytes(content.encode() if isinstance(content, str) else content)
-    return path
+    return written(tmp_path / "mesh.off", content)
 
 
 @pytest.mark.parametrize(

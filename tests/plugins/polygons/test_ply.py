@@ -5,9 +5,11 @@ from functools import partial
 
 import numpy as np
 import pytest
+from corpus.ply_text_files import PLY_HEADER as HEADER
 from hypothesis import HealthCheck, given, settings, strategies as st
 from orbiframe_polygons.ply_reader import read
 from orbiframe_polygons.ply_writer import write
+from written import written
 
 from orbiframe import FormatError, Polyhedron
 from orbiframe.testing import contract_tests
@@ -21,17 +23,6 @@ test_big_endian_writer_laws = contract_tests(
     "writer", write, params={"big_endian": True}, suffix=".ply", counterpart=read
 )
 
-HEADER = """ply
-format ascii 1.0
-comment made by hand
-element vertex 4
-property float x
-property float y
-property float z
-element face 4
-property list uchar int vertex_indices
-end_header
-"""
 POINTS = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
 PLAIN = HEADER + POINTS + "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n"
 TETRAHEDRON = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
@@ -39,9 +30,7 @@ CORNERS = np.vstack([np.zeros(3), np.eye(3)])
 
 
 def of(tmp_path, content):
-    path = tmp_path / "mesh.ply"
-    path.write_bytes(content.encode() if isinstance(content, str) else content)
-    return path
+    return written(tmp_path / "mesh.ply", content)
 
 
 def binary(order: str = "<", faces=TETRAHEDRON, rows=CORNERS) -> bytes:

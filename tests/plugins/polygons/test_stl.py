@@ -8,6 +8,7 @@ import pytest
 from orbiframe_polygons import stl_reader
 from orbiframe_polygons.stl_reader import read
 from orbiframe_polygons.stl_writer import write
+from written import written
 
 from orbiframe import FormatError, Polyhedron
 from orbiframe.testing import contract_tests
@@ -39,9 +40,7 @@ PLAIN = text(CORNERS)
 
 
 def of(tmp_path, content):
-    path = tmp_path / "mesh.stl"
-    path.write_bytes(content.encode() if isinstance(content, str) else content)
-    return path
+    return written(tmp_path / "mesh.stl", content)
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@ from __future__ import annotations
 import pytest
 from orbiframe_polygons.elements.tecplot_reader import read
 from small_meshes import CUBE, QUADS, TRIANGLES, lists, words
+from written import written
 
 from orbiframe import FormatError
 
@@ -14,9 +15,7 @@ BLOCK = "\n".join(" ".join(str(p[k]) for p in CUBE) for k in range(3)) + "\n" + 
 
 
 def of(tmp_path, content: str):
-    path = tmp_path / "a.dat"
-    path.write_text(content)
-    return path
+    return written(tmp_path / "a.dat", content)
 
 
 @pytest.mark.parametrize(

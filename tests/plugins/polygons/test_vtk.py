@@ -12,6 +12,7 @@ from orbiframe_polygons.vtk import lz4
 from orbiframe_polygons.vtk.reader import read
 from orbiframe_polygons.vtk.writer import write
 from small_meshes import CUBE, QUADS, lists, volume, words
+from written import written
 
 from orbiframe import FormatError, Polyhedron
 from orbiframe.testing import Lab, contract_tests
@@ -31,9 +32,7 @@ GRID = (
 
 
 def of(tmp_path, content, suffix=".vtk"):
-    path = tmp_path / f"a{suffix}"
-    path.write_bytes(content.encode() if isinstance(content, str) else content)
-    return path
+    return written(tmp_path / f"a{suffix}", content)
 
 
 @pytest.mark.parametrize("suffix", [".vtk", ".vtp", ".vtu"])

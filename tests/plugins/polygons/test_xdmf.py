@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from orbiframe_polygons.xdmf_reader import read
 from orbiframe_polygons.xdmf_writer import write
+from written import written
 
 from orbiframe import FormatError, Polyhedron
 from orbiframe.testing import contract_tests
@@ -30,9 +31,7 @@ MIXED = MIXED.replace('NumberOfElements="4"', 'NumberOfElements="3"').replace('"
 
 
 def of(tmp_path, content):
-    path = tmp_path / "mesh.xdmf"
-    path.write_bytes(content.encode())
-    return path
+    return written(tmp_path / "mesh.xdmf", content)
 
 
 def test_triangles_and_a_mixture(tmp_path):
