@@ -13,6 +13,8 @@ from typing import Any
 
 import pytest
 
+pytestmark = pytest.mark.long
+
 DATASETS = Path(__file__).parents[2] / "datasets"
 # Name of the dataset and what is said of the fit.
 FITS = {

@@ -9,6 +9,7 @@ DATASETS = Path(__file__).parents[2] / "datasets"
 NAMES = sorted(path.stem for path in DATASETS.glob("*.off"))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", NAMES)
 def test_every_dataset_is_fitted_on_the_regular_polygon(orbiframe, tmp_path, name):
     mesh, report = DATASETS / f"{name}.off", tmp_path / "report.json"

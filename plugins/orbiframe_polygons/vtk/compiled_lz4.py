@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from orbiframe.compiled import compiled
 
 _ENDLESS = 2**60
@@ -14,7 +16,7 @@ def _longer(source, at, count):  # type: ignore[no-untyped-def]
     while more == 255:
         if at >= len(source):
             return at, _ENDLESS
-        more = int(source[at])
+        more = np.int64(source[at])
         at += 1
         count += more
     return at, count
@@ -25,7 +27,7 @@ def fill(source, out):  # type: ignore[no-untyped-def]
     """Fill `out` by sequences of literals and matches; whether it is full exactly where the source ends."""
     at, to = 0, 0
     while at < len(source):
-        token = int(source[at])
+        token = np.int64(source[at])
         at += 1
         count = token >> 4
         if count == 15:
@@ -40,7 +42,7 @@ def fill(source, out):  # type: ignore[no-untyped-def]
             return to == len(out)
         if at + 2 > len(source):
             return False
-        back = int(source[at]) + 256 * int(source[at + 1])
+        back = np.int64(source[at]) + 256 * np.int64(source[at + 1])
         at += 2
         count = 4 + (token & 15)
         if count == 19:
