@@ -26,7 +26,8 @@ def lifted(orbifold: Orbifold, points: Points, tail: Ints, head: Ints) -> Floats
     place, reach = np.empty((len(tail), 3)), float(orbifold.atlas.radius.max())
     left = np.arange(len(tail))
     while len(left):
-        found, distance = _nearest(orbifold, *(Points(p.patch[left], p.x[left]) for p in (start, end)), reach)
+        here, there = (Points(p.patch[left], p.x[left]) for p in (start, end))
+        found, distance = _nearest(orbifold, here, there, reach)
         place[left] = found
         left = left[distance + far[left] > reach * (1 + _ROUNDING)]
         reach *= _GROWTH
