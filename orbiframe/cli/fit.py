@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from orbiframe.cli.progress import Progress
 from orbiframe.cli.repairs import add_repairs, repaired, repairs_asked
 from orbiframe.cli.report import json_text, summary, write_report
+from orbiframe.cli.speech import say
 from orbiframe.components.registry import Registry
 from orbiframe.errors import UsageError
 from orbiframe.files.destination import require_destination
@@ -44,6 +45,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--tolerance", metavar="T", type=float, help="largest rms error, of the box's diagonal (output.tolerance)")
     add("--max-error", metavar="T", type=float, help="largest error anywhere, of the box's diagonal (output.max_error)")
     add("--refine", metavar="K", type=int, help="K*K output triangles for each input triangle (output.refine)")
+    add("--order", metavar="Q", type=int, help="write curved triangles of order 1 to 6, for finite elements")
+    add("--format", metavar="NAME", help="with --order: the format, such as gmsh-2.2, instead of that of the suffix")
     add("--report", metavar="FILE.json", type=Path, help="write the report")
     add("--save", metavar="FILE", type=Path, help="write the surface itself, to be evaluated anywhere")
     add("--json", action="store_true", help="print the report as JSON instead of the summary")
@@ -66,8 +69,12 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     mesh = _repaired(args, config, registry) if repairs_asked(args) else args.mesh
     progress = Progress(quiet=args.quiet)
     found = fit_parts(mesh, config, registry, progress)
-    if exact := _exact(args, config, registry):
+    written = None
+    if args.order is not None:
+        written = _write_elements(args, found, config.output.refine or 1, registry, progress)
+    elif _exact(args, config, registry):
         _export(args.output, _only(found, args.output), registry, progress)
+        written = f"exact rational patches, {_size(args.output)}"
     else:
         gate.write(args.output, found.output, registry)
     if args.save:
@@ -75,8 +82,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     if args.report:
         write_report(args.report, found.report)
     if not args.quiet:
-        written = args.output.stat().st_size if exact else None
-        print(json_text(found.report) if args.json else summary(found.report, exact=written))
+        print(json_text(found.report) if args.json else summary(found.report, written=written))
     return 0
 
 
@@ -97,6 +103,33 @@ def _save(path: Path, found: Parts) -> None:
     several = len(found.results) > 1
     for number, result in enumerate(found.results, start=1):
         save_surface(result.surface, path.with_stem(f"{path.stem}-{number}") if several else path)
+
+
+def _write_elements(
+    args: argparse.Namespace, found: Parts, density: int, registry: Registry, progress: Progress
+) -> str:
+    """Write curved triangles on all surfaces, and say what was written."""
+    from orbiframe.files import gate
+    from orbiframe.surfaces import GeodesicFaces, curved_mesh, input_faces, joined_meshes
+
+    progress("elements", None)
+    start = time.perf_counter()
+    surfaces = [result.surface for result in found.results]
+    faces: list[GeodesicFaces] = [input_faces(surface) for surface in surfaces]
+    mesh = joined_meshes(
+        [curved_mesh(surface, part, args.order, density) for surface, part in zip(surfaces, faces, strict=True)]
+    )
+    gate.write_elements(args.output, mesh, registry, format=args.format)
+    found.report["seconds"]["elements"] = round(time.perf_counter() - start, 4)
+    progress("elements", found.report["seconds"]["elements"])
+    other = any(part.gluing is not surface.refinement.coarse for part, surface in zip(faces, surfaces, strict=True))
+    if other and not args.quiet:
+        say("triangles of the input fold as geodesic triangles, so the elements are Delaunay triangles of its vertices")
+    return f"{len(mesh.elements)} triangles of order {mesh.order}, {len(mesh.nodes)} nodes, {_size(args.output)}"
+
+
+def _size(path: Path) -> str:
+    return f"{path.stat().st_size / 1e6:.2g} MB"
 
 
 def _export(path: Path, result: Result, registry: Registry, progress: Progress) -> None:
@@ -144,11 +177,24 @@ def _exact(args: argparse.Namespace, config: Config, registry: Registry) -> bool
     return exports(args.output, registry) and isinstance(basis, type) and issubclass(basis, PiecewiseBasis)
 
 
+def _kind(args: argparse.Namespace, config: Config, registry: Registry) -> str:
+    """The kind of component that writes the output. Raises UsageError for orders that are not made."""
+    from orbiframe.surfaces.curved_mesh import LARGEST_ORDER
+
+    if args.order is None:
+        if args.format is not None:
+            raise UsageError(f"--format {args.format} chooses how elements are written; add --order, such as --order 2")
+        return "exporter" if _exact(args, config, registry) else "writer"
+    if not 1 <= args.order <= LARGEST_ORDER:
+        raise UsageError(f"--order {args.order}: elements have an order of 1 to {LARGEST_ORDER}")
+    return "elements"
+
+
 def _require_destinations(args: argparse.Namespace, config: Config, registry: Registry) -> None:
     outputs = {"-o": args.output, "--report": args.report, "--save": args.save}
     plugins = {f"the plugin {path}": path for path in config.plugins}
     require_apart(outputs, {"the input": args.mesh, "--config": args.config, **plugins})
-    require_destination(args.output, registry, kind="exporter" if _exact(args, config, registry) else "writer")
+    require_destination(args.output, registry, args.format, kind=_kind(args, config, registry))
     for path in (args.report, args.save):
         if path is not None:
             require_output(path)

@@ -14,6 +14,7 @@ from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.plugin import Component
 
 if TYPE_CHECKING:
+    from orbiframe.surfaces.curved_mesh import CurvedMesh
     from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.files.outputs import output, require_output
 from orbiframe.files.places import SIZE_LIMIT, require_readable
@@ -89,6 +90,16 @@ def export(path: Path, surface: OrbifoldSurface, registry: Components) -> None:
     _write_whole(path, _component(path, registry, "exporter", None, None), surface)
 
 
+def write_elements(path: Path, mesh: CurvedMesh, registry: Components, *, format: str | None = None) -> None:
+    """Write curved triangles, by the format of elements of the file's suffix or by the one that `format` names.
+
+    The file appears whole or not at all, and errors are as in `write`.
+    """
+    path = Path(path)
+    require_output(path)
+    _write_whole(path, _component(path, registry, "elements", format, None), mesh)
+
+
 def exports(path: Path, registry: Components) -> bool:
     """Whether an exporter writes files with this suffix."""
     return any(path.suffix.lower() in c.suffixes for c in registry.components("exporter"))
@@ -110,7 +121,9 @@ def component_name(path: Path, registry: Components, kind: str, format: str | No
     if not names:
         raise FormatError(_unknown(path, suffix, kind, registry))
     if len(names) > 1:
-        raise PluginError(f"{path}: the {kind}s {', '.join(names)} claim '{suffix}'; name one of them as the format")
+        raise PluginError(
+            f"{path}: the {_plural(kind)} {', '.join(names)} claim '{suffix}'; name one of them as the format"
+        )
     return names[0]
 
 
@@ -123,9 +136,13 @@ def _component(
 
 def _unknown(path: Path, suffix: str, kind: str, registry: Components) -> str:
     known = sorted({s for c in registry.components(kind) for s in c.suffixes})
-    listed = f"the {kind}s know {' '.join(known)}" if known else f"there is no {kind}"
+    listed = f"the {_plural(kind)} know {' '.join(known)}" if known else f"there is no {kind}"
     found = f"the suffix '{suffix}' is not known" if suffix else "the name has no suffix"
     return f"{path}: {found}; {listed}. Name the format where the suffix does not say it.{did_you_mean(suffix, known)}"
+
+
+def _plural(kind: str) -> str:
+    return "formats of elements" if kind == "elements" else f"{kind}s"
 
 
 def _guarded(path: Path, doing: str, component: Callable[..., object], *arguments: object) -> Any:

@@ -6,11 +6,12 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from orbiframe import FitError, OrbifoldSurface, Polyhedron, UsageError
+from orbiframe import FitError, Orbifold, OrbifoldSurface, Polyhedron, UsageError
 from orbiframe.meshes import require_closed_surface
 from orbiframe_remeshing.even_sites import even_mesh, surface_area
 from orbiframe_remeshing.quads import quadrilaterals
 from orbiframe_remeshing.relaxation import relaxed
+from orbiframe_remeshing.surface_mesh import SurfaceMesh
 
 Progress = Callable[[str, float | None], None]
 
@@ -54,17 +55,29 @@ def remeshed(surface: OrbifoldSurface, vertices: float, *, quads: bool = False, 
 
     Raises FitError where there are too few to tell the faces apart by their vertices.
     """
-    orbifold = surface.orbifold
-    count = (vertices + 5 * float(orbifold.euler_characteristic)) / 6 if quads else vertices
-    mesh = relaxed(even_mesh(surface, max(round(count), LEAST), seed))
-    made = quadrilaterals(mesh) if quads else mesh.polyhedron()
+    count = (vertices + 5 * float(surface.orbifold.euler_characteristic)) / 6 if quads else vertices
+    mesh = even_triangles(surface, count, seed)
+    if not quads:
+        return mesh.polyhedron()
+    made = quadrilaterals(mesh)
+    _require_topology(made, surface.orbifold)
+    return made
+
+
+def even_triangles(surface: OrbifoldSurface, vertices: float, seed: int = 0) -> SurfaceMesh:
+    """Even triangles on a surface, with so many vertices. Raises FitError as `remeshed` does."""
+    mesh = relaxed(even_mesh(surface, max(round(vertices), LEAST), seed))
+    _require_topology(mesh.polyhedron(), surface.orbifold)
+    return mesh
+
+
+def _require_topology(made: Polyhedron, orbifold: Orbifold) -> None:
     found = require_closed_surface(made)
     if (found.euler_characteristic, found.orientable) != (orbifold.euler_characteristic, orbifold.orientable):
         raise FitError(
             f"{len(made.vertices)} vertices make a mesh that is {found.name}, which is not the surface; take more of "
             "them, or shorter edges"
         )
-    return made
 
 
 def areas_of(surfaces: list[OrbifoldSurface]) -> list[float]:
