@@ -14,7 +14,7 @@ from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.plugin import Component
 
 if TYPE_CHECKING:
-    from orbiframe.surfaces.curved_mesh import CurvedMesh
+    from orbiframe.surfaces.curved_triangles import CurvedMesh
     from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.files.outputs import output, require_output
 from orbiframe.files.places import SIZE_LIMIT, require_readable
@@ -79,15 +79,17 @@ def write(
     _write_whole(path, _component(path, registry, "writer", format, options), polyhedron)
 
 
-def export(path: Path, surface: OrbifoldSurface, registry: Components) -> None:
-    """Write a surface itself, exactly, by the exporter of the file's suffix.
+def export(
+    path: Path, surface: OrbifoldSurface, registry: Components, *, options: Mapping[str, Any] | None = None
+) -> dict[str, Any]:
+    """Write a surface itself, exactly, by the exporter of the file's suffix with its options; what it says of the file.
 
     The file appears whole or not at all, as in `write`. Raises FormatError where the place is unfit or the exporter
-    fails, FitError for a surface that has no exact patches.
+    fails, FitError for a surface that has no exact patches where these are asked for.
     """
     path = Path(path)
     require_output(path)
-    _write_whole(path, _component(path, registry, "exporter", None, None), surface)
+    return dict(_write_whole(path, _component(path, registry, "exporter", None, options), surface) or {})
 
 
 def write_elements(path: Path, mesh: CurvedMesh, registry: Components, *, format: str | None = None) -> None:
@@ -155,9 +157,9 @@ def _guarded(path: Path, doing: str, component: Callable[..., object], *argument
         raise FormatError(f"{path}: {doing} failed: {_described(error)}") from error
 
 
-def _write_whole(path: Path, writer: Callable[..., object], content: object) -> None:
+def _write_whole(path: Path, writer: Callable[..., object], content: object) -> Any:
     with output(path) as made:
-        _guarded(path, "writing", writer, made, content)
+        return _guarded(path, "writing", writer, made, content)
 
 
 def _described(error: BaseException) -> str:

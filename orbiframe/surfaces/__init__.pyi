@@ -1,6 +1,6 @@
 """The public names of orbiframe.surfaces, each with the module it lives in."""
 
-from .curved_mesh import (
+from .curved_triangles import (
     CurvedMesh as CurvedMesh,
     curved_mesh as curved_mesh,
     joined_meshes as joined_meshes,

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from orbiframe.surfaces.curved_mesh import LARGEST_ORDER, CurvedMesh
+from orbiframe.surfaces.curved_triangles import LARGEST_ORDER, CurvedMesh
 from orbiframe.testing.lab import Lab
 
 Component = Callable[[Path, CurvedMesh], Any]

@@ -12,7 +12,7 @@ from orbiframe.errors import UsageError
 from orbiframe.fitting.pipeline import fit
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.surfaces import geodesic_faces
-from orbiframe.surfaces.curved_mesh import curved_mesh, joined_meshes, node_exponents
+from orbiframe.surfaces.curved_triangles import curved_mesh, joined_meshes, node_exponents
 from orbiframe.surfaces.geodesic_faces import GeodesicFaces, input_faces
 from orbiframe.testing.reference import reference_triangulations
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
