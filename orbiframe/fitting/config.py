@@ -177,7 +177,7 @@ class Config:
         """
         step = self.steps[table]
         target = self._loaded(table, registry, name or step.name)
-        options = checked_options(target, step.options, table, self.places)
+        options = checked_options(target, step.options, table, self.places, STEPS[table][1])
         return partial(target, **options) if options else target
 
     def _loaded(self, table: str, registry: Registry, name: str) -> Callable[..., Any]:
