@@ -140,7 +140,7 @@ def test_override_values_are_toml_or_else_text(text, value):
         ("[output]\nrefin = 1", ["allowed: refine, tolerance", "Did you mean 'refine'?"]),
         ("[map]\nwegihts = 'x'", ["my.toml, line 2", "Did you mean 'weights'?"]),
         ("[map]\nmethod = 'packed'\nsize = 3", ["[map]", "allowed: method, weights"]),
-        ("[group]\nsides = 3", ["[group] has no option 'sides'", "allowed: none"]),
+        ("[group]\nsides = 3", ["[group] has no option 'sides'", "allowed: method"]),
         ("[fitter]\nname = 'smooth'", ["[fitter] needs the option 'strength' (float)", "fitter.strength"]),
         ("plugins = 'a.py'", ["plugins = 'a.py'"]),
         ("plugins = [3]", ["plugins[0]"]),
