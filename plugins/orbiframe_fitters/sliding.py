@@ -27,8 +27,8 @@ _LONGEST_STEP = 0.3
 _MOST_STRETCH = 30.0
 # A step that leaves more than this share of the distance is the last one.
 _GAIN = 0.97
-# Up to so many functions the equations of a step are factored as a whole.
-_DIRECT = 1200
+# Up to so many functions the equations of a step are factored as a whole; of more, iteration takes less time.
+_DIRECT = 200
 
 
 class Schedule(NamedTuple):
