@@ -181,7 +181,7 @@ def test_a_smooth_surface_is_not_pinched_in_one_step(mapped) -> None:
     assert slide._pinched(coefficients, 0.5 * coefficients)  # a quarter of the area
     assert not slide._pinched(coefficients, 0.65 * coefficients)
     middle = basis.values(basis.centres, coefficients)
-    near = 0.8 * np.exp(-((middle - middle[0]) ** 2).sum(axis=1))
+    near = 0.9 * np.exp(-((middle - middle[0]) ** 2).sum(axis=1) / 4)
     thinner = coefficients + near[:, None] * (middle[0] - coefficients)
     assert slide._pinched(coefficients, thinner)
     assert not _Slide(basis, coordinate_samples(mapped), schedule)._pinched(coefficients, 0.1 * coefficients)
