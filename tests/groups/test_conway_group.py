@@ -189,6 +189,21 @@ def test_stabilizers_of_the_corners_of_spherical_cells(text, orders):
     assert max(orders) in corners
 
 
+@pytest.mark.parametrize("text", [*FAMILIES, *EXCEPTIONS])
+def test_the_sides_of_a_spherical_domain_are_those_of_the_points_without_a_nearer_image(text):
+    group = orbifold_group(S2, ConwaySymbol.parse(text))
+    x = S2.from_polar(np.arccos(np.linspace(-1, 1, 4000)), 2.399963 * np.arange(4000))
+    distance = S2.distance(S2.origin, S2.act(group.elements[:, None], x))
+    nearest = distance.argmin(axis=0)
+    clear = np.sort(distance, axis=0)[1] - distance.min(axis=0) > 1e-9 if len(distance) > 1 else np.full(4000, True)
+    inside = (x @ group.sides.T > 0).all(axis=1)
+    assert (inside == (distance.min(axis=0) >= distance[0]))[clear].all()
+    assert inside.mean() == pytest.approx(1 / len(group.elements), rel=0.05)
+    assert S2.distance(S2.origin, x[inside]).max() <= group.circumradius + 1e-12
+    assert S2.distance(S2.origin, x[inside]).max() >= group.circumradius - 0.1
+    assert ((nearest == 0) == inside)[clear].all()
+
+
 def test_a_stabilizer_is_carried_along_with_its_point():
     group = group_of("*237")
     corner = group.polygon.vertices[2]
