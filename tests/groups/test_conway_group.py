@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -66,6 +67,21 @@ def test_the_cell_meets_poincares_conditions_and_folds_to_the_orbifold(text):
     polygon.require_conditions(1e-12)
     assert polygon.signature.canonical == ConwaySymbol.parse(text).canonical
     assert polygon.relation_defect < 1e-9
+
+
+@pytest.mark.parametrize("text", ["*237", "*245"])
+def test_the_defect_of_relations_is_that_of_the_rotations_by_wrong_angles(text):
+    """Two mirrors at the angle pi/n + d: n times their product is a rotation by 2 n d about the corner."""
+    polygon = group_of(text).polygon
+    vertices = H2.project(polygon.vertices * [1, 1 + 1e-6, 1 - 2e-6])
+    wrong = replace(polygon, vertices=vertices)
+    expected = 0.0
+    for cycle, order, defect in zip(wrong.word.cycles, wrong.orders, wrong.angle_defects, strict=True):
+        there = H2.carry(vertices[cycle.corners[0]])
+        turn = there @ H2.rotation(2 * order * defect) @ H2.inverse(there)
+        expected = max(expected, np.abs(turn - np.eye(3)).max())
+    assert expected > 1e-6
+    assert wrong.relation_defect == pytest.approx(expected, rel=1e-2)
 
 
 @pytest.mark.parametrize("text", ALL)
