@@ -17,7 +17,7 @@ def prism(sides: int, radius: float, height: float) -> Polyhedron:
     k = np.arange(sides)
     walls = np.stack([k, (k + 1) % sides, (k + 1) % sides + sides, k + sides], axis=1).tolist()
     ends = [k[::-1].tolist(), (k + sides).tolist()]
-    return Polyhedron.from_faces(np.concatenate([ring, ring + [0, 0, height]]), [*walls, *ends])
+    return Polyhedron.from_faces(np.concatenate([ring, ring + np.array([0, 0, height])]), [*walls, *ends])
 
 
 @pytest.mark.parametrize(("sides", "curved"), [(24, True), (12, True), (8, False), (150, False)])
