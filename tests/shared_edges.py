@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
-from OCP.GeomAPI import GeomAPI_ProjectPointOnSurf
 from OCP.GeomLProp import GeomLProp_SLProps
+from OCP.ShapeAnalysis import ShapeAnalysis_Surface
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
@@ -51,10 +51,10 @@ def meeting(shape: Any, points: int = 23) -> Meeting:
 
 
 def _projected(surface: Any, point: Any) -> tuple[float, np.ndarray]:
-    foot = GeomAPI_ProjectPointOnSurf(point, surface)
-    u, v = foot.LowerDistanceParameters()
-    normal = GeomLProp_SLProps(surface, u, v, 1, 1e-9).Normal()
-    return foot.LowerDistance(), np.array([normal.X(), normal.Y(), normal.Z()])
+    foot = ShapeAnalysis_Surface(surface)
+    place = foot.ValueOfUV(point, 1e-9)
+    normal = GeomLProp_SLProps(surface, place.X(), place.Y(), 1, 1e-9).Normal()
+    return foot.Gap(), np.array([normal.X(), normal.Y(), normal.Z()])
 
 
 def _explored(shape: Any, kind: Any) -> list[Any]:

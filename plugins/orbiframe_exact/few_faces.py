@@ -26,6 +26,8 @@ _INTERVALS, _ROUNDS = 4, 10
 # Edges are so much nearer to the surface than faces: a coarse edge lets the angle refine the faces in vain.
 _EDGE_SHARE = 0.15
 ANGLE = 0.1  # degrees between the tangent planes of neighbours
+# What is asked for where intervals are looked at: between those points it may be a little more.
+_ASKED = 0.85 * ANGLE
 _WITHIN = np.array([0.1, 0.3, 0.5, 0.7, 0.9])  # where an interval is looked at
 
 
@@ -226,9 +228,9 @@ class FewFaces:
             angle = np.degrees(np.arctan2(sine, cosine))
             angles[e] = angle.max()
             worst.append(u[angle.argmax()])
-            for side in sides if angle.max() > ANGLE else ():
+            for side in sides if angle.max() > _ASKED else ():
                 quad, k = divmod(side, 4)
-                at = self.along(side, u[angle > ANGLE])[k % 2]
+                at = self.along(side, u[angle > _ASKED])[k % 2]
                 breaks = self.faces[quad][0][k % 2]
                 mended = bisected(breaks, holding(breaks, at))
                 self.own_breaks[quad][k % 2] = np.union1d(self.own_breaks[quad][k % 2], mended)
