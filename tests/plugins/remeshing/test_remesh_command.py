@@ -63,7 +63,9 @@ def test_every_component_has_its_share_of_the_vertices(orbiframe, tmp_path):
     assert (mesh.vertices[:, 0] > 5).mean() == pytest.approx(0.8, abs=0.03)  # four times the area
 
 
-def test_small_angles_are_told_with_their_place(orbiframe, tmp_path):
+def test_small_angles_are_told_with_their_place(orbiframe, tmp_path, monkeypatch):
+    """With another limit than that of users, so that some are below it whatever the mesh."""
+    monkeypatch.setattr("orbiframe_remeshing.quality.SMALL", 50.0)
     ran = orbiframe("remesh", PLATE, "-o", tmp_path / "few.ply", "--vertices", 60, "--size", 80)
     assert ran.status == 0
     assert "below 25 degrees" in ran.err
