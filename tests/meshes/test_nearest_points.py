@@ -7,6 +7,7 @@ import pytest
 
 from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.meshes.nearest_points import NearestPoints
+from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.subdivision import refine
 from orbiframe.testing.polyhedra import reference_polyhedra
 
@@ -33,10 +34,46 @@ def test_no_vertex_of_a_fine_mesh_is_nearer(name: str) -> None:
 
 def test_triangles_of_very_different_size_are_all_tried() -> None:
     """The nearest triangle is one with a far centroid."""
-    from orbiframe.meshes.polyhedron import Polyhedron
-
     spots = np.random.default_rng(2).normal(size=(50, 1, 3)) * 0.01 + [5.0, 0.0, 1.0]
     small = (spots + np.array([[0, 0, 0], [1e-3, 0, 0], [0, 1e-3, 0]])).reshape(-1, 3)
     vertices = np.concatenate([[[-100, -100, 0], [100, -100, 0], [0, 200, 0]], small])
     mesh = Polyhedron.from_faces(vertices, np.arange(len(vertices)).reshape(-1, 3))
     assert NearestPoints(mesh).distance(np.array([[5.0, 0.0, 0.3]]))[0] == pytest.approx(0.3)
+
+
+def fan(n: int) -> Polyhedron:
+    """A double pyramid over a regular polygon of n corners: all triangles are needles about its two tips."""
+    turn = 2 * np.pi * np.arange(n) / n
+    ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(n)], axis=1)
+    i, j = np.arange(n), np.roll(np.arange(n), -1)
+    faces = np.concatenate([np.stack([i, j, np.full(n, n)], 1), np.stack([j, i, np.full(n, n + 1)], 1)])
+    return Polyhedron.from_faces(np.concatenate([ring, [[0, 0, 1], [0, 0, -1]]]), faces)
+
+
+def test_in_a_fan_of_needles_few_are_tried() -> None:
+    """As many for a point among 200,000 triangles as among 2,000, and the distance is that to the double cone."""
+    points = np.random.default_rng(3).normal(size=(1000, 3))
+    down = np.stack([np.hypot(points[:, 0], points[:, 1]), np.abs(points[:, 2])], axis=1)
+    share = np.clip((down @ [1, -1] + 1) / 2, 0, 1)
+    truth = np.linalg.norm(down - np.stack([share, 1 - share], axis=1), axis=1)
+    for n in (1000, 100_000):
+        squares, tried = NearestPoints(fan(n)).searched(points)
+        np.testing.assert_allclose(np.sqrt(squares), truth, atol=5 / n**2)
+        assert tried < 100 * len(points)
+
+
+def test_all_triangles_agree_with_brute_force() -> None:
+    """Points, sides and insides of triangles of every shape, those without area too."""
+    rng = np.random.default_rng(4)
+    corners = rng.normal(size=(301, 3, 3)) * 10 ** rng.uniform(-4, 0, size=(301, 1, 1))
+    corners[::7, 2] = corners[::7, 1]
+    corners[::11] = corners[::11, :1]
+    mesh = Polyhedron.from_faces(corners.reshape(-1, 3), np.arange(903).reshape(-1, 3))
+    points, weights = rng.normal(size=(50, 3)), rng.dirichlet([0.3, 0.3, 0.3], size=4000)
+    dense = (weights @ corners).reshape(-1, 3)
+    brute = np.linalg.norm(points[:, None] - dense, axis=2).min(axis=1)
+    found = NearestPoints(mesh).distance(points)
+    assert (found <= brute + 1e-12).all()
+    np.testing.assert_allclose(found, brute, atol=0.1)
+    inside = np.einsum("fk,fkc->fc", rng.dirichlet([1, 1, 1], size=301), corners)
+    np.testing.assert_allclose(NearestPoints(mesh).distance(inside), 0, atol=1e-7)
