@@ -1,23 +1,15 @@
-"""Nearest points: how far points in space are from a triangle mesh, exactly.
-
-Triangles are sorted so that near ones are neighbours, and boxes are put about four of them, about two such boxes, and
-so on up to one, each turned along its triangles (Gottschalk, Lin and Manocha, OBBTree, 1996): triangles of any size,
-and fans of thousands of needles, do no harm.
-"""
+"""Nearest points: how far points in space are from a triangle mesh, exactly."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from orbiframe.compiled.decorator import compiled
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.triangle_boxes import LEAF, TriangleBoxes
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
-
-_LEAF = 4  # triangles in each of the smallest boxes
 
 
 class NearestPoints:
@@ -25,9 +17,8 @@ class NearestPoints:
 
     def __init__(self, mesh: Polyhedron) -> None:
         corners = mesh.vertices[mesh.triangles]
-        order = cKDTree(corners.mean(axis=1), leafsize=_LEAF).indices
-        self._corners = np.ascontiguousarray(corners[order])
-        self._axes, self._low, self._high = _boxes(self._corners)
+        self._boxes = TriangleBoxes.of(corners)
+        self._corners = np.ascontiguousarray(corners[self._boxes.order])
 
     def distance(self, points: Floats) -> Floats:
         """The distance of each point to the mesh, (n,)."""
@@ -36,30 +27,8 @@ class NearestPoints:
     def searched(self, points: Floats) -> tuple[Floats, int]:
         """The squares of the distances, (n,), and how many triangles were tried for all points together."""
         points = np.ascontiguousarray(points, dtype=np.float64)
-        squares, tried = _search(points, self._corners, self._axes, self._low, self._high)
+        squares, tried = _search(points, self._corners, *self._boxes[1:])
         return np.asarray(squares), int(tried)
-
-
-def _boxes(corners: Floats) -> tuple[Floats, Floats, Floats]:
-    """The axes, (2m - 1, 3, 3), and the least and greatest coordinates along them, (2m - 1, 3), of every box.
-
-    Box k holds the boxes 2k + 1 and 2k + 2; the last m boxes, a power of two, hold `_LEAF` triangles each. Where there
-    are not so many, the last triangle stands for those that are missing.
-    """
-    leaves = 1 << max(-(-len(corners) // _LEAF) - 1, 0).bit_length()
-    missing = np.broadcast_to(corners[-1:], (leaves * _LEAF - len(corners), 3, 3))
-    points = np.concatenate([corners, missing])
-    levels = [_turned(points.reshape(2**k, -1, 3)) for k in range(leaves.bit_length())]
-    axes, low, high = (np.concatenate(parts) for parts in zip(*levels, strict=True))
-    return axes, low, high
-
-
-def _turned(points: Floats) -> tuple[Floats, Floats, Floats]:
-    """Axes along which the points of each box, (m, k, 3), spread most and least, and their range along these."""
-    away = points - points.mean(axis=1, keepdims=True)
-    axes = np.linalg.eigh(np.swapaxes(away, 1, 2) @ away)[1]
-    along = points @ axes
-    return np.ascontiguousarray(np.swapaxes(axes, 1, 2)), along.min(axis=1), along.max(axis=1)
 
 
 @compiled
@@ -79,7 +48,7 @@ def _search(points, corners, axes, low, high):  # type: ignore[no-untyped-def]
             if not away[size] < least:
                 continue
             if box >= first_leaf:
-                for k in range(_LEAF * (box - first_leaf), min(_LEAF * (box - first_leaf + 1), len(corners))):
+                for k in range(LEAF * (box - first_leaf), min(LEAF * (box - first_leaf + 1), len(corners))):
                     tried += 1
                     square = _square(x, y, z, corners[k])
                     if square < least:
