@@ -67,10 +67,11 @@ class Orbifold:
         """The lifts of many patches at once: those of patches[i] within radii[i] have base i and stand together.
 
         The walk goes from a copy g to its neighbours g h, h a transition, as long as their origins stay within the
-        radius plus the radius of their patch. That finds every copy if X is tiled by polygons, one in each copy and
-        within the radius of its patch, and a transition joins any two polygons with a common side: the geodesic from
-        origin to origin runs through a chain of neighbours that all come as near. (Where it runs through a corner, one
-        beside it does not.) In S^2 no distance exceeds pi, and a large radius visits the whole finite group.
+        radius plus the radius of their patch. That finds every copy if X is tiled by polygons, one about the origin of
+        each copy and within the radius of its patch, and a transition joins any two polygons with a common side: the
+        geodesic from origin to origin runs through a chain of neighbours that all come as near. (Where it runs through
+        a corner, one beside it does not.) In S^2 no distance exceeds pi, and a large radius visits the whole finite
+        group.
         """
         base, reach = np.asarray(patches, dtype=np.intp), np.asarray(radii, dtype=np.float64)
         origin = self.geometry.origin

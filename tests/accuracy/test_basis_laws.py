@@ -10,6 +10,8 @@ from dataset_laws import FAMILIES, REGISTRY, SURFACES, exists, mapped, verdicts
 from orbiframe.errors import GeometryError
 from orbiframe.testing.kit import Verdict
 
+pytestmark = pytest.mark.long
+
 PAIRS = [(f, s) for f in FAMILIES for s in SURFACES if exists(f, s)]
 
 

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from fitted import fitted
 
+pytestmark = pytest.mark.long
+
 
 def test_the_plate_with_a_thousand_functions() -> None:
     report = fitted("plate_genus2.off", 1000).report

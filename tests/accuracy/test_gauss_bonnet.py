@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from fitted import fitted_linearly
 
+pytestmark = pytest.mark.long
+
 # Dataset: Euler characteristic, and the Gauss points along a direction that reach 1e-6 with 60 functions.
 CASES = {
     "cube.off": (2, 4),

@@ -13,6 +13,8 @@ from typing import Any
 
 import pytest
 
+pytestmark = pytest.mark.long
+
 DATASETS = Path(__file__).parents[2] / "datasets"
 # Name of the dataset and what is said of the fit; cube, torus and the solids have many vertices that are equally far.
 FITS = {
@@ -21,6 +23,7 @@ FITS = {
     "cube, wendland": ["cube.off", "basis.name=wendland"],
     "dodecahedron": ["dodecahedron.off"],
     "torus": ["torus.off"],
+    "torus, steps iterated": ["torus.off", "basis.size=250"],
     "klein bottle": ["klein_bottle.off"],
     "crosscaps": ["three_crosscaps.off"],
     "sphere, splines": ["sphere.off", "basis.name=ps2"],

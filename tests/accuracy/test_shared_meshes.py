@@ -17,7 +17,10 @@ from orbiframe.meshes.orientation import oriented
 from orbiframe.meshes.surface_type import surface_type, without_unused_vertices
 
 FOLDER = Path(__file__).parents[2].parent / "shared" / "meshes"
-pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="there is no folder shared/meshes beside the repository")
+pytestmark = [
+    pytest.mark.long,
+    pytest.mark.skipif(not FOLDER.is_dir(), reason="there is no folder shared/meshes beside the repository"),
+]
 
 # Euler characteristic and orientability, as the list of the folder says.
 CLOSED = {

@@ -19,6 +19,8 @@ from orbiframe.delaunay.polygon_fan import polygon_triangulation
 from orbiframe.errors import FitError
 from orbiframe.words.word import Word
 
+pytestmark = pytest.mark.long
+
 PI2 = np.pi**2
 # Strohmaier and Uski (2013) for the Bolza surface; closed forms for the sphere and flat surfaces.
 BOLZA = [0, 3.8388872588421995, 5.3536013411890504, 8.2495548152006581, 14.726216787788832, 15.048916133267047]

@@ -35,6 +35,7 @@ def place(tmp_path, monkeypatch):
             del sys.modules[name]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("page", RUN, ids=page_name)
 def test_page_runs_from_top_to_bottom(page, place, capsys):
     names: dict[str, object] = {"__name__": "page"}

@@ -197,6 +197,7 @@ import signal, sys, time
 from pathlib import Path
 from orbiframe.files.outputs import output
 signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where the tests run in the background
+signal.signal(signal.SIGHUP, signal.SIG_DFL)  # ignored where they outlive a terminal
 with output(Path(sys.argv[1])) as made:
     made.write_text("half")
     print("at work", flush=True)
@@ -215,11 +216,12 @@ with output(Path(sys.argv[1])) as made:
 
 
 def test_a_program_that_sees_to_signals_itself_is_left_alone(tmp_path: Path) -> None:
-    before = signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    before = signal.signal(signal.SIGTERM, signal.SIG_IGN), signal.signal(signal.SIGHUP, signal.SIG_DFL)
     try:
         with temporary_folder(tmp_path):
             assert signal.getsignal(signal.SIGTERM) is signal.SIG_IGN
             assert signal.getsignal(signal.SIGHUP) not in (signal.SIG_DFL, signal.SIG_IGN)
         assert signal.getsignal(signal.SIGHUP) is signal.SIG_DFL
     finally:
-        signal.signal(signal.SIGTERM, before)
+        signal.signal(signal.SIGTERM, before[0])
+        signal.signal(signal.SIGHUP, before[1])

@@ -15,6 +15,8 @@ from orbiframe.meshes.defects import faces_with_repeated_vertices
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.testing.polyhedra import reference_polyhedra
 
+pytestmark = pytest.mark.long
+
 
 def test_a_warning_comes_where_digits_are_missed_in_a_fit() -> None:
     mesh = hard.with_finger(hard.plate_cells(1, 1), (0, 0, 0), 18, 2)

@@ -18,6 +18,8 @@ from orbiframe.meshes.disjoint_union import disjoint_union
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.surface_type import surface_type
 
+pytestmark = pytest.mark.long
+
 NAMES = ("plate_genus2_coarse.off", "torus.off", "klein_bottle.off")
 
 

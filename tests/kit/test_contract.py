@@ -76,10 +76,8 @@ def test_every_component_keeps_the_laws_of_its_kind(component, equipment, law, t
 def test_every_mutant_is_rejected(kind, name, tmp_path):
     laws = laws_of(kind)
     law = next(law for law in laws.laws if law.__name__ == name)
-    rejections = [
-        rejected(law, laws.mutants[name], c, tmp_path / c.name) for c in REGISTRY.components(kind) if not c.extra
-    ]
-    assert any(rejections)
+    installed = [c for c in REGISTRY.components(kind) if not c.extra]
+    assert any(rejected(law, laws.mutants[name], c, tmp_path / c.name) for c in installed)
 
 
 def rejected(law, mutation, component: Component, folder) -> bool:

@@ -136,6 +136,7 @@ def test_bisection_of_flipped_needles_needs_no_more_vertices_than_are_aimed_at()
     np.testing.assert_allclose(there, here, atol=1e-8)
 
 
+@pytest.mark.long
 def test_a_part_with_needles_without_height_is_mapped_like_one_without() -> None:
     """Angles are kept as well as on the clean plate, and the polygons of the file are found again in X/H."""
     mesh = hard.with_slivers(hard.plate(1, 2, 2), 0.3, 0.0, 3)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from orbiframe.compiled import compiled
 
 _ENDLESS = 2**60
@@ -10,11 +12,11 @@ _ENDLESS = 2**60
 @compiled(arrays=False)
 def _longer(source, at, count):  # type: ignore[no-untyped-def]
     """Where a length that goes on after its first half byte ends, and the length; past the source: no length."""
-    more = 255
+    more = np.int64(255)
     while more == 255:
         if at >= len(source):
             return at, _ENDLESS
-        more = int(source[at])
+        more = np.int64(source[at])
         at += 1
         count += more
     return at, count
@@ -23,9 +25,9 @@ def _longer(source, at, count):  # type: ignore[no-untyped-def]
 @compiled(arrays=False)
 def fill(source, out):  # type: ignore[no-untyped-def]
     """Fill `out` by sequences of literals and matches; whether it is full exactly where the source ends."""
-    at, to = 0, 0
+    at, to = np.int64(0), np.int64(0)
     while at < len(source):
-        token = int(source[at])
+        token = np.int64(source[at])
         at += 1
         count = token >> 4
         if count == 15:
@@ -40,7 +42,7 @@ def fill(source, out):  # type: ignore[no-untyped-def]
             return to == len(out)
         if at + 2 > len(source):
             return False
-        back = int(source[at]) + 256 * int(source[at + 1])
+        back = np.int64(source[at]) + 256 * np.int64(source[at + 1])
         at += 2
         count = 4 + (token & 15)
         if count == 19:

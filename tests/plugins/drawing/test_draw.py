@@ -55,7 +55,7 @@ def test_pictures_of_groups_that_cannot_be(orbiframe, tmp_path, monkeypatch, opt
 
 def test_a_mesh_is_drawn_as_a_tessellation(orbiframe, tmp_path):
     for name, options in (("one.svg", ()), ("two.svg", ()), ("other.svg", ("--centre", 7, "--radius", 3))):
-        ran = orbiframe("draw", PLATE, "-o", tmp_path / name, *options)
+        ran = orbiframe("draw", PLATE, "-o", tmp_path / name, "--set", "basis.size=60", *options)
         assert (ran.status, ran.out, ran.err) == (0, "", "")
         ElementTree.parse(tmp_path / name)
     one, two, other = ((tmp_path / name).read_bytes() for name in ("one.svg", "two.svg", "other.svg"))
