@@ -67,8 +67,8 @@ class Polyhedron:
         starts = np.ascontiguousarray(offsets, dtype=np.intp)
         _require_corners(len(points), starts, ends)
         twin, same = _twins_by_ends(len(points), starts, ends)
-        extra = [None if a is None else np.asarray(a, dtype=np.float64) for a in (normals, colors, face_colors)]
-        return cls(points, starts, ends, twin, same, *extra, unit)
+        tables = [None if a is None else np.asarray(a, dtype=np.float64) for a in (normals, colors, face_colors)]
+        return cls(points, starts, ends, twin, same, tables[0], tables[1], tables[2], unit)
 
     @classmethod
     def from_faces(cls, vertices: ArrayLike, faces: Sequence[Sequence[int]] | NDArray[np.integer]) -> Polyhedron:
