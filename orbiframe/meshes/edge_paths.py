@@ -170,7 +170,8 @@ def _farthest(start, neighbour, length, count, first, radius):  # type: ignore[n
     found, farthest = 0, np.inf
     equals = [first]
     while True:
-        for vertex in sorted(equals):
+        while equals:
+            vertex = heapq.heappop(equals)
             if found < len(chosen) and distance[vertex] >= _SHORTER * farthest:
                 chosen[found] = vertex
                 _claim(start, neighbour, length, vertex, found, distance, owner)
@@ -187,18 +188,17 @@ def _farthest(start, neighbour, length, count, first, radius):  # type: ignore[n
 
 @compiled
 def _farthest_left(waiting, distance, equals):  # type: ignore[no-untyped-def]
-    """The greatest distance, and in `equals` all vertices that are as far, which wait no longer."""
-    equals.clear()
+    """The greatest distance, and in the heap `equals` all vertices that are as far, which wait no longer."""
     farthest = 0.0
     while waiting:
         top, vertex = waiting[0]
         if -top != distance[vertex]:
             heapq.heapreplace(waiting, (-distance[vertex], vertex))
             continue
-        if equals and -top < _SHORTER * farthest:
+        if len(equals) and -top < _SHORTER * farthest:
             break
         farthest = max(farthest, -top)
-        equals.append(vertex)
+        heapq.heappush(equals, vertex)
         heapq.heappop(waiting)
     return farthest
 
