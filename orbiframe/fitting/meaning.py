@@ -18,7 +18,7 @@ MEANINGS = ("auto", SMOOTH, SEMI_SMOOTH, FACETS)
 # Up to this share of its bending in sharp edges a mesh is taken for smooth, from the other one on for its facets.
 _SMOOTH, _SHARP = 0.20, 0.45
 # So many samples of facets are enough; a mesh of needles would have many more than functions can tell apart.
-_LEAST_SAMPLES, _SAMPLES_PER_FUNCTION = 50_000, 100
+_LEAST_SAMPLES, _SAMPLES_PER_FUNCTION = 250_000, 100
 
 
 class Meaning(NamedTuple):
