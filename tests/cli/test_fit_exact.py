@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
 import pytest
 from fitted import REGISTRY
 
@@ -65,4 +66,4 @@ def test_several_parts_are_no_exact_surface(orbiframe, tmp_path):
 
 
 def moved(mesh):
-    return mesh.with_vertices(mesh.vertices + [5.0, 0, 0])
+    return mesh.with_vertices(mesh.vertices + np.array([5.0, 0, 0]))
