@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -19,7 +21,7 @@ from OCP.StepBasic import StepBasic_Product
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
 from OCP.TCollection import TCollection_HAsciiString
 
-from orbiframe import FitError, OrbifoldSurface, __version__
+from orbiframe import FitError, Notice, OrbifoldSurface, __version__
 from orbiframe.surfaces import PeriodicPatch, patches_of
 from orbiframe_exact.faces_of_surface import described, fitted
 from orbiframe_exact.shapes import shape_of
@@ -41,9 +43,10 @@ def write_step(
     exact: as rational patches, three for each micro triangle; a tensor product is one periodic surface. Otherwise a few
     polynomial B-spline faces near the surface: faces, about so many, 0 for as many as its topology suggests; tolerance,
     their largest distance from the surface as a share of the diagonal of its box. Returns what they are in numbers.
-    Raises FitError for a surface without exact patches, or derivatives, or where Open CASCADE fails.
+    A surface in metres is converted, with a notice; one of no unit is written as it is. Raises FitError for a surface
+    without exact patches, or derivatives, or where Open CASCADE fails.
     """
-    shape, found, periodic = _shape(surface, exact, faces, tolerance)
+    shape, found, periodic = _shape(_in_millimetres(path, surface), exact, faces, tolerance)
     _silence()
     writer = STEPControl_Writer()
     Interface_Static.SetCVal_s("write.step.unit", "MM")
@@ -60,7 +63,7 @@ def write_iges(
     path: Path, surface: OrbifoldSurface, *, exact: bool = True, faces: int = 0, tolerance: float = 1e-4
 ) -> dict[str, Any]:
     """The surface in an IGES file (5.3, millimetres); for exact, faces and tolerance see `write_step`."""
-    shape, found, _ = _shape(surface, exact, faces, tolerance)
+    shape, found, _ = _shape(_in_millimetres(path, surface), exact, faces, tolerance)
     _silence()
     writer = IGESControl_Writer("MM", _AS_TOPOLOGY)
     _require(bool(writer.AddShape(shape)), "convert the shape to IGES")
@@ -79,6 +82,14 @@ def _shape(surface: OrbifoldSurface, exact: bool, faces: int, tolerance: float) 
     shape = spline_shape(few, surface)
     found = described(few, surface, tolerance) | {"valid": bool(BRepCheck_Analyzer(shape).IsValid())}
     return shape, found, False
+
+
+def _in_millimetres(path: Path, surface: OrbifoldSurface) -> OrbifoldSurface:
+    if surface.unit != "metre":
+        return surface
+    told = "coordinates are converted from metres to millimetres (times 1000)"
+    warnings.warn(f"{path.name}: {told}", Notice, stacklevel=3)
+    return replace(surface, origin=1000 * surface.origin, scale=1000 * surface.scale)
 
 
 def _iges_text(model: Any) -> bytes:

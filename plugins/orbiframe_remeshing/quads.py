@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -40,7 +42,8 @@ def quadrilaterals(mesh: SurfaceMesh) -> Polyhedron:
     placed = mended(whole, _POOR).polyhedron()
     # The corners of a half, and after them the middle of the edge before its corner.
     faces = np.column_stack([whole.triangles[: triangles.size], np.roll(middle, 1, axis=1).ravel()])
-    return Polyhedron.from_faces(placed.vertices, faces).with_vertices(placed.vertices, placed.normals)
+    made = Polyhedron.from_faces(placed.vertices, faces).with_vertices(placed.vertices, placed.normals)
+    return replace(made, unit=placed.unit)
 
 
 def _between(mesh: SurfaceMesh, first: Ints, *others: Ints) -> Points:

@@ -7,6 +7,7 @@ import json
 import time
 import warnings
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -116,7 +117,7 @@ def _made(surfaces: list[OrbifoldSurface], wanted: Wanted, seed: int) -> list[An
 def _whole(meshes: list[Polyhedron]) -> Polyhedron:
     from orbiframe.meshes import disjoint_union
 
-    return meshes[0] if len(meshes) == 1 else disjoint_union(meshes)
+    return meshes[0] if len(meshes) == 1 else replace(disjoint_union(meshes), unit=meshes[0].unit)
 
 
 def _write_elements(args: argparse.Namespace, made: list[SurfaceMesh], registry: Registry) -> dict[str, Any]:

@@ -55,7 +55,8 @@ class SurfaceMesh:
         normal /= np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)[:, None]
         corner = np.unique(self.triangles, return_index=True)[1]
         facing = np.einsum("vi,vi->v", normal, cross(self.places, self.triangles)[corner // 3])
-        return mesh.with_vertices(placed, normal * np.where(facing < 0, -1.0, 1.0)[:, None])
+        outward = normal * np.where(facing < 0, -1.0, 1.0)[:, None]
+        return replace(mesh.with_vertices(placed, outward), unit=self.surface.unit)
 
 
 def jets_at(surface: OrbifoldSurface, points: Points) -> Floats:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from fitted import fitted
@@ -103,6 +105,14 @@ def test_the_nearest_lift_is_that_of_all_copies():
         copies = orbifold.geometry.act(isometry[patch == points.patch[j]], points.x[j])
         least = orbifold.geometry.distance(points.x[i], copies).min()
         assert orbifold.geometry.distance(points.x[i], place) == pytest.approx(least, abs=1e-9)
+
+
+@pytest.mark.parametrize("quads", [False, True])
+def test_the_unit_is_that_of_the_mesh(quads):
+    surface = fitted("cube.off").surface
+    metres = replace(surface.refinement.coarse, unit="metre")
+    surface = replace(surface, refinement=replace(surface.refinement, coarse=metres))
+    assert remeshed(surface, 150, quads=quads).unit == "metre"
 
 
 def test_the_same_seed_gives_the_same_mesh():
