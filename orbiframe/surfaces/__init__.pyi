@@ -1,7 +1,13 @@
 """The public names of orbiframe.surfaces, each with the module it lives in."""
 
 from .exact_patches import patches_of as patches_of
+from .field import Field as Field, fit_field as fit_field
+from .nearest import nearest_points as nearest_points
 from .periodic_patch import PeriodicPatch as PeriodicPatch
+from .principal import (
+    PrincipalCurvature as PrincipalCurvature,
+    principal_curvature as principal_curvature,
+)
 from .quadrilateral_patches import QuadrilateralPatches as QuadrilateralPatches
 from .surface import Curvature as Curvature, OrbifoldSurface as OrbifoldSurface
 from .triangle_patches import TrianglePatches as TrianglePatches

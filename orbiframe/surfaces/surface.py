@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from orbiframe.errors import FitError
 from orbiframe.functions.basis import Basis, DifferentiableBasis
@@ -18,6 +18,10 @@ from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.planes.quadrature import triangle_points
 from orbiframe.triangulations.triangulation import Triangulation
+
+if TYPE_CHECKING:
+    from orbiframe.functions.fitter import Fitter
+    from orbiframe.surfaces.field import Field
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -113,6 +117,17 @@ class OrbifoldSurface:
             bent = self._unit_curvature(Points(np.repeat(first_patch[part], order**2), x.reshape(-1, 3)))
             total += float(np.abs(weights).ravel() @ (bent.gaussian * bent.element))
         return total
+
+    def fit_field(
+        self, points: Points | ArrayLike, values: ArrayLike, *, fitter: Fitter | None = None, basis: Basis | None = None
+    ) -> Field:
+        """The smooth functions on this surface that have about these values (n,) or (n, q) at n points.
+
+        points: of X/H, or (n, 3) in space; see `orbiframe.surfaces.fit_field`.
+        """
+        from orbiframe.surfaces.field import fit_field
+
+        return fit_field(self, points, values, fitter=fitter, basis=basis)
 
     def tessellate(self, density: int = 1, *, bisected: bool = False) -> Polyhedron:
         """A triangle mesh on the surface with normals: every triangle of the input in density^2 triangles.
