@@ -9,5 +9,5 @@ from .principal import (
     principal_curvature as principal_curvature,
 )
 from .quadrilateral_patches import QuadrilateralPatches as QuadrilateralPatches
-from .surface import Curvature as Curvature, OrbifoldSurface as OrbifoldSurface
+from .surface import Curvature as Curvature, OrbifoldSurface as OrbifoldSurface, Tessellation as Tessellation
 from .triangle_patches import TrianglePatches as TrianglePatches

@@ -52,6 +52,13 @@ class Curvature(NamedTuple):
     element: Floats
 
 
+class Tessellation(NamedTuple):
+    """A triangle mesh on a surface, and the points of X/H under its vertices."""
+
+    mesh: Polyhedron
+    points: Points
+
+
 @dataclass(frozen=True, eq=False)
 class OrbifoldSurface:
     """The image of X/H under three functions of a basis, placed in space.
@@ -137,16 +144,20 @@ class OrbifoldSurface:
         glued as those of the input are. Where a file could not tell the edges by their ends, triangles are halved
         first, see `refined_by_ends`. Normals point to the side from which the faces run counterclockwise.
         """
+        return self.tessellation(density, bisected=bisected).mesh
+
+    def tessellation(self, density: int = 1, *, bisected: bool = False) -> Tessellation:
+        """The same mesh with the points of X/H that its vertices lie over."""
         mesh = refined_by_ends(self.triangulation.polyhedron if bisected else self.refinement.coarse, density)
         face, barycentric = mesh.face, mesh.barycentric
         if not bisected:
             face, barycentric = self.refinement.locate(face, barycentric)
         points = self.triangulation.locate(face, barycentric)
         if not isinstance(self.basis, DifferentiableBasis):
-            return mesh.polyhedron.with_vertices(self.evaluate(points))
+            return Tessellation(mesh.polyhedron.with_vertices(self.evaluate(points)), points)
         d = self._derivatives(points, 1)
         normals = _unit(np.cross(d[1], d[2])) * self.triangulation.face_signs[face, None]
-        return mesh.polyhedron.with_vertices(self.origin + self.scale * d[0], normals)
+        return Tessellation(mesh.polyhedron.with_vertices(self.origin + self.scale * d[0], normals), points)
 
     def _unit_curvature(self, points: Points) -> Curvature:
         """The curvature of the surface before it is scaled: no square of a very large or very small number."""

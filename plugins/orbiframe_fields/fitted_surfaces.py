@@ -31,16 +31,17 @@ class FittedSurface(NamedTuple):
 
 
 def fitted_surfaces(
-    mesh: Polyhedron, config: Path | None, options: list[str], registry: Registry
+    mesh: Polyhedron, config: Path | None, options: list[str], registry: Registry, *, least: int = _LEAST
 ) -> list[FittedSurface]:
     """The smooth surfaces of the components of a mesh, by the configuration; in C2 splines unless that says else.
 
+    least: the least number of functions, as far as the most that are taken without being asked for.
     Raises what `fit` raises.
     """
     require_closed_surface(mesh, several=True)
     found = []
     for vertices, part in _parts(mesh):
-        size = int(np.clip(len(vertices), _LEAST, _MOST))
+        size = int(np.clip(max(len(vertices), least), _LEAST, _MOST))
         settings = Config.load(config, [_BASIS, f"basis.size={size}", *options])
         for path in settings.plugins:
             registry.add_file(path)

@@ -1,4 +1,4 @@
-"""Fields on surfaces: curvature of meshes."""
+"""Fields on surfaces: curvature of meshes, and functions from data."""
 
 from __future__ import annotations
 
@@ -7,13 +7,19 @@ from orbiframe.plugin import Component, hookimpl
 
 @hookimpl
 def orbiframe_components() -> list[Component]:
-    """The command that measures curvature."""
+    """The commands that measure curvature and that fit functions."""
     return [
         Component(
             "command",
             "curvature",
             "orbiframe_fields.curvature_command:configure",
             "principal curvatures and directions at the vertices of a mesh",
+        ),
+        Component(
+            "command",
+            "field",
+            "orbiframe_fields.field_command:configure",
+            "smooth functions on the surface of a mesh from values at points",
         ),
     ]
 
