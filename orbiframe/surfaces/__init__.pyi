@@ -2,6 +2,7 @@
 
 from .exact_patches import patches_of as patches_of
 from .field import Field as Field, fit_field as fit_field
+from .gram_schmidt import Orthonormal as Orthonormal, orthonormal as orthonormal
 from .nearest import nearest_points as nearest_points
 from .periodic_patch import PeriodicPatch as PeriodicPatch
 from .principal import (
@@ -10,4 +11,5 @@ from .principal import (
 )
 from .quadrilateral_patches import QuadrilateralPatches as QuadrilateralPatches
 from .surface import Curvature as Curvature, OrbifoldSurface as OrbifoldSurface, Tessellation as Tessellation
+from .surface_forms import SurfaceForms as SurfaceForms
 from .triangle_patches import TrianglePatches as TrianglePatches

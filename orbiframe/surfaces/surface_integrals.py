@@ -37,21 +37,23 @@ class Integration(NamedTuple):
         return self.area_on_x / self.area
 
 
-def integration(surface: OrbifoldSurface, basis: Basis) -> Integration:
+def integration(surface: OrbifoldSurface, basis: Basis, number: int | None = None) -> Integration:
     """Gauss points for integrals of functions of a basis and of squares of their derivatives.
 
     Piecewise polynomials of degree d have d - 2 points along each direction of every micro triangle, and two at least,
     so that in the flat plane squares of third derivatives are integrated exactly; other functions have four points on
-    each triangle of the map. Surfaces scaled to unit size are meant, as their coefficients are.
+    each triangle of the map. number: as many along each direction instead. Surfaces scaled to unit size are meant, as
+    their coefficients are.
     """
     geometry = surface.orbifold.geometry
     if isinstance(basis, ElementBasis):
         micro = basis.micro_triangles
         corners = np.einsum("fij,fmcj->fmci", basis.domain.placement, micro).reshape(-1, 3, 3)
-        patch, number = np.repeat(basis.domain.patch, micro.shape[1]), max(basis.degree - 2, 2)
+        patch, few = np.repeat(basis.domain.patch, micro.shape[1]), max(basis.degree - 2, 2)
     else:
-        corners, number = surface.triangulation.lifts, _POINTS
+        corners, few = surface.triangulation.lifts, _POINTS
         patch = surface.triangulation.patch[surface.triangulation.polyhedron.triangles[:, 0]]
+    number = few if number is None else number
     x, weights = triangle_points(geometry, geometry.project(corners), number)
     points = Points(np.repeat(patch, number**2), x.reshape(-1, 3))
     element = surface.curvature(points).element / surface.scale**2

@@ -58,9 +58,9 @@ def read_data(path: Path, mesh: Polyhedron, chosen: Sequence[str] = ()) -> Field
 
     CSV: a line of names and lines of numbers, of which x, y and z are the place, or `vertex` or `face` the number in
     the mesh, from 0; without either, lines for all vertices or all faces in their order. Other files are read by
-    meshio: data at points, or where there are none at the centroids of cells. Lines with a missing number are left out, and
-    that is said. Raises FormatError with the line for anything else that is wrong, UsageError for a name that is not
-    there.
+    meshio: data at points, or where there are none at the centroids of cells. Lines with a missing number are left
+    out, and that is said. Raises FormatError with the line for anything else that is wrong, UsageError for a name that
+    is not there.
     """
     data = _of_csv(path, mesh) if path.suffix.lower() in (".csv", ".txt") else _of_mesh(path)
     if not data.columns:
