@@ -145,8 +145,9 @@ def trial(mutant: Mutant, tree: Tree, records: Records) -> dict[str, Any]:
     compiled = mutant.mutation.function in compiled_functions(mutant.path)
     spent, tried = 0.0, 0
     with tree.changed(mutant.path, mutant.mutation.planted(source), compiled) as code:
+        functions = entered_functions(mutant, records)
         for name, files in zip(STAGES, mutant.stages, strict=True):
-            order, seconds = chosen(mutant, files, records, name)
+            order, seconds = chosen(functions, files, records, name)
             if not order:
                 continue
             limit = 20 + 5 * seconds + (60 if compiled else 0)
@@ -158,11 +159,17 @@ def trial(mutant: Mutant, tree: Tree, records: Records) -> dict[str, Any]:
     return result | {"stage": "", "by": "", "tried": tried, "seconds": round(spent, 1), "tests": deciding("", mutant)}
 
 
-def chosen(mutant: Mutant, files: list[str], records: Records, stage: str) -> tuple[dict[str, int], float]:
-    """The order of the tests to try: those that enter the function, then, nearby, the others of the same files."""
+def entered_functions(mutant: Mutant, records: Records) -> frozenset[str]:
+    """Those of a mutant; where no test is seen to enter them, as in a process of its own, all of its file."""
+    seen = any(records.entering(file, mutant.functions) for files in mutant.stages for file in files)
+    return mutant.functions if seen else functions_of(mutant.path)
+
+
+def chosen(functions: frozenset[str], files: list[str], records: Records, stage: str) -> tuple[dict[str, int], float]:
+    """The order of the tests to try: those that enter the functions, then, nearby, the others of the same files."""
     entering, others = dict[str, float](), dict[str, float]()
     for file in files:
-        found = records.entering(file, mutant.functions)
+        found = records.entering(file, functions)
         entering |= found
         if stage != STAGES[2] and (found or stage == STAGES[0]):
             others |= {t: s for t, s in records.seconds(file).items() if t not in found}

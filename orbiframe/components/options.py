@@ -44,16 +44,18 @@ def options_of(target: Callable[..., Any]) -> list[Option]:
 
 
 def checked_options(
-    target: Callable[..., Any], given: Mapping[str, object], table: str, places: Mapping[str, str]
+    target: Callable[..., Any], given: Mapping[str, object], table: str, places: Mapping[str, str], selector: str = ""
 ) -> dict[str, Any]:
     """The given options with the types that the signature asks for; a list becomes a tuple where one is asked for.
 
-    table: name of the configuration table; places: where each "table.key" was written. Raises ConfigError for an
-    unknown option, a value of another type, and a missing one; the sentence names the place and what is allowed.
+    table: name of the configuration table; places: where each "table.key" was written; selector: the key of the table
+    that has chosen the target, if there is one. Raises ConfigError for an unknown option, a value of another type, and
+    a missing one; the sentence names the place and what is allowed.
     """
     options = {option.name: option for option in options_of(target)}
+    known = {selector: None, **options} if selector else options
     for key in given:
-        require_known(key, options, table, places)
+        require_known(key, known, table, places)
     for option in options.values():
         if option.required and option.name not in given:
             raise ConfigError(

@@ -64,7 +64,7 @@ class _Rule(ctypes.Structure):
 def _ask_kernel(files: list[Path], folders: list[Path], program: list[Path]) -> None:
     if not sys.platform.startswith("linux"):
         return
-    library = ctypes.CDLL(None, use_errno=True)
+    library = ctypes.CDLL(None)
     version = library.syscall(CREATE, None, 0, 1)
     if version < 1:
         return

@@ -177,7 +177,7 @@ class Config:
         """
         step = self.steps[table]
         target = self._loaded(table, registry, name or step.name)
-        options = checked_options(target, step.options, table, self.places)
+        options = checked_options(target, step.options, table, self.places, STEPS[table][1])
         return partial(target, **options) if options else target
 
     def _loaded(self, table: str, registry: Registry, name: str) -> Callable[..., Any]:
@@ -281,7 +281,7 @@ def _step(table: str, given: Mapping[str, Any], places: Mapping[str, str]) -> St
 
 
 def _require_option_of_kind(table: str, step: Step, registry: Registry, places: Mapping[str, str]) -> None:
-    known = {} if step.name in ("mesh", "none") else _options_of_kind(step.kind, registry)
+    known = {STEPS[table][1]: None, **({} if step.name in ("mesh", "none") else _options_of_kind(step.kind, registry))}
     for key in step.options:
         require_known(key, known, table, places)
 

@@ -84,7 +84,7 @@ class SphericalGroup(Group):
     def sides(self) -> Floats:
         """Covectors (m, 3), positive in the domain, of the great circles that bound it.
 
-        A half of the sphere has one, which its origin is 90 degrees away from, a lune two.
+        A half of the sphere has one, a lune two.
         """
         planes = self.geometry.origin - self.elements[1:, :, 0]
         planes = np.asarray(planes / np.linalg.norm(planes, axis=-1, keepdims=True))
@@ -101,8 +101,10 @@ class SphericalGroup(Group):
     @cached_property
     def circumradius(self) -> float:
         """Every point of the domain lies within this of the origin."""
-        if len(self.vertices) == 0:
-            return float(np.pi / (1 + len(self.sides)))
+        if len(self.sides) == 0:
+            return float(np.pi)
+        if len(self.sides) == 1:
+            return float(np.pi / 2 + self.geometry.distance(self.geometry.origin, self.sides[0]))
         return float(self.geometry.distance(self.geometry.origin, self.vertices).max())
 
     def _leaves_some(self, corners: Floats, plane: Floats, planes: Floats) -> bool:

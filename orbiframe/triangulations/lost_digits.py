@@ -26,10 +26,9 @@ def crowding_of(triangulation: Triangulation) -> Crowding:
     largest loss of all triangles counts.
     """
     areas = np.abs(triangulation.areas)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        lost = np.log10(_distances(triangulation) / _shortest_edges(triangulation))
-        ratio = areas.min() / areas.max()
-    return Crowding(float(ratio), float(np.maximum(lost, 0.0).max()))
+    distances, edges = _distances(triangulation), _shortest_edges(triangulation)
+    most = np.divide(distances, edges, out=np.full_like(edges, np.inf), where=edges > 0).max()
+    return Crowding(float(areas.min() / areas.max()), float(np.log10(max(most, 1.0))))
 
 
 def _distances(triangulation: Triangulation) -> NDArray[np.float64]:

@@ -15,7 +15,6 @@ _TURN = 0.6180339887498949
 # which frame vector.
 _LOWER = np.array([0, 0, 0, 1, 2, 2, 3, 4, 5, 5])
 _ALONG = np.array([0, 0, 1, 0, 0, 1, 0, 0, 0, 1])
-_ENTRIES = np.array([1, 3, 6, 10])
 
 
 @compiled(inline=True)

@@ -27,8 +27,10 @@ _LONGEST_STEP = 0.3
 _MOST_STRETCH = 30.0
 # A step that leaves more than this share of the distance is the last one.
 _GAIN = 0.97
-# Up to so many functions the equations of a step are factored as a whole.
-_DIRECT = 1200
+# A smooth surface is shrunk to at least so much in one step at every datum: beyond, a limb is being pinched off.
+_LEAST_SHARE = 0.35
+# Up to so many functions the equations of a step are factored as a whole; of more, iteration takes less time.
+_DIRECT = 200
 
 
 class Schedule(NamedTuple):
@@ -155,6 +157,8 @@ class _Slide:
             before = distance
             for share in (1.0, 0.5, 0.25):
                 trial = coefficients + share * change
+                if self._pinched(coefficients, trial):
+                    continue
                 there = self._slid(self._under(feet, trial), trial)
                 distance = self._distance(there)
                 if distance < before:
@@ -213,16 +217,28 @@ class _Slide:
             return nearly_solved(rows, right)
         return solved(_joined(rows), right.T.reshape(-1, 1)).reshape(3, -1).T
 
+    def _pinched(self, before: Floats, after: Floats) -> bool:
+        """Whether a smooth surface shrinks too much somewhere; facets may, where an edge becomes sharp."""
+        if self.energy is None or self.energy.order < 3:
+            return False
+        pairs = ((_elements(part, before), _elements(part, after)) for part in self.fairness)
+        return any((new < _LEAST_SHARE * old).any() for old, new in pairs)
+
     def _stiffness(self, coefficients: Floats, energy: Energy) -> Floats | csr_array:
         """The energy in the metric of the surface as it is."""
         gram = Gram(self.basis.size)
-        for chosen, rows, slopes in self.fairness:
-            first, second = (slope @ coefficients for slope in slopes)
-            element = np.maximum(np.linalg.norm(np.cross(first, second), axis=1), np.finfo(float).tiny)
-            stretch = np.minimum(1 / element, _MOST_STRETCH * self.samples.stretch[chosen])
+        for part in self.fairness:
+            chosen, rows, _ = part
+            stretch = np.minimum(1 / _elements(part, coefficients), _MOST_STRETCH * self.samples.stretch[chosen])
             for row in rows:
                 gram.add(row, energy.weights(chosen, stretch))
         return gram.matrices()[0]
+
+
+def _elements(part: _Fairness, coefficients: Floats) -> Floats:
+    """The elements of area of the surface at samples, positive."""
+    first, second = (slope @ coefficients for slope in part.slopes)
+    return np.asarray(np.maximum(np.linalg.norm(np.cross(first, second), axis=1), np.finfo(float).tiny))
 
 
 def _linearised(feet: _Feet, weights: Floats, schedule: Schedule) -> tuple[Floats, Floats]:

@@ -52,7 +52,7 @@ def test_a_torus_takes_the_lattice_that_is_named(orbiframe, tmp_path):
         ("plate_genus2", ["--group", "regular"], 2, "installed: finite, lattice, regular-polygon"),
         ("plate_genus2", ["--map", "harmnic"], 2, "Did you mean 'harmonic'?"),
         ("torus", ["--group", "lattice", "--set", "group.first=[0, 1]"], 1, "two independent vectors"),
-        ("torus", ["--group", "lattice", "--set", "marking.base=1"], 2, "allowed: bases"),
+        ("torus", ["--group", "lattice", "--set", "marking.base=1"], 2, "allowed: method, bases"),
     ],
 )
 def test_what_does_not_fit_is_refused(orbiframe, tmp_path, name, options, status, said):

@@ -55,6 +55,24 @@ def registry_of(*components: object) -> Registry:
     return registry
 
 
+def test_declarations_stand_in_the_order_of_a_fit_then_by_name_then_by_plugin():
+    registry = Registry()
+    fitter, basis, other = (
+        Component(kind, name, "math:sin", "for a test")
+        for kind, name in (("fitter", "a"), ("basis", "b"), ("geometry", "c"))
+    )
+    registry.register("second", Declares(fitter, basis))
+    registry.register("first", Declares(Component("basis", "a", "math:sin", "for a test"), basis, other))
+    found = [(c.kind, c.name, owner) for c, owner in registry.declarations()]
+    assert found == [
+        ("geometry", "c", "first"),
+        ("basis", "a", "first"),
+        ("basis", "b", "first"),
+        ("basis", "b", "second"),
+        ("fitter", "a", "second"),
+    ]
+
+
 def test_our_own_plugins_are_found_and_none_is_broken():
     registry = Registry.discover()
     assert registry.broken == []

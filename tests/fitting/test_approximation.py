@@ -109,6 +109,26 @@ def test_a_tolerance_is_reached_with_functions_where_the_error_is() -> None:
     assert result.report["fit"]["size"] < 2500
 
 
+def test_every_round_for_a_tolerance_has_more_functions(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the power 2/3 of what the error is too large, at least 1.3 and at most 2 times as many."""
+    from orbiframe.fitting import approximation
+
+    sizes, of_size = [], approximation.Approximations.of_size
+
+    def recorded(self, size, density=None):
+        sizes.append(size)
+        return of_size(self, size, density)
+
+    monkeypatch.setattr(approximation.Approximations, "of_size", recorded)
+    monkeypatch.setattr(approximation, "_FIRST_SIZE", 60)
+    wanted = ["output.refine=1", "output.tolerance=0.004", "fitter.name=least-squares"]
+    pipeline.fit(mesh_of("cube.off"), Config.load(overrides=wanted), REGISTRY)
+    steps = np.diff(np.log(sizes))
+    assert len(steps) >= 2
+    assert (steps > np.log(1.29)).all()
+    assert (steps < np.log(2.01)).all()
+
+
 def test_a_largest_error_is_reached() -> None:
     wanted = ["output.refine=1", "output.max_error=0.02"]
     result = pipeline.fit(mesh_of("cube.off"), Config.load(overrides=wanted), REGISTRY)

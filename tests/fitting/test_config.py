@@ -123,7 +123,7 @@ def test_override_values_are_toml_or_else_text(text, value):
     [
         (
             "[basis]\n\nsiez = 3",
-            ["my.toml, line 3", "'siez'", "allowed: size, scale, mode, window", "Did you mean 'size'?"],
+            ["my.toml, line 3", "'siez'", "allowed: name, size, scale, mode, window", "Did you mean 'size'?"],
         ),
         ("[basis]\nsize = '3'", ["my.toml, line 2", "basis.size = '3'", "integer"]),
         ("[basis]\nsize = 3.5", ["basis.size = 3.5", "integer"]),
@@ -139,8 +139,8 @@ def test_override_values_are_toml_or_else_text(text, value):
         ("[output]\ntolerance = 0.0", ["output.tolerance = 0.0", "greater than 0"]),
         ("[output]\nrefin = 1", ["allowed: refine, tolerance", "Did you mean 'refine'?"]),
         ("[map]\nwegihts = 'x'", ["my.toml, line 2", "Did you mean 'weights'?"]),
-        ("[map]\nmethod = 'packed'\nsize = 3", ["[map]", "allowed: weights"]),
-        ("[group]\nsides = 3", ["[group] has no option 'sides'", "allowed: none"]),
+        ("[map]\nmethod = 'packed'\nsize = 3", ["[map]", "allowed: method, weights"]),
+        ("[group]\nsides = 3", ["[group] has no option 'sides'", "allowed: method"]),
         ("[fitter]\nname = 'smooth'", ["[fitter] needs the option 'strength' (float)", "fitter.strength"]),
         ("plugins = 'a.py'", ["plugins = 'a.py'"]),
         ("plugins = [3]", ["plugins[0]"]),

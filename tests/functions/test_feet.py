@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from fitted import fitted
 
-from orbiframe.functions.feet import around, foot_points, foot_step, moved
+from orbiframe.functions.feet import _Search, around, foot_points, foot_step, moved
 from orbiframe.orbifolds.atlas import Points
 
 
@@ -81,3 +81,17 @@ def test_moved_points_stay_points_of_the_same_surface() -> None:
     x = geometry.exp(start.x, np.einsum("nij,nj->ni", geometry.frame(start.x), step))
     expected = surface.basis.values(Points(start.patch, geometry.settle(x)), surface.coefficients)
     np.testing.assert_allclose(surface.basis.values(there, surface.coefficients), expected, atol=1e-10)
+
+
+def test_only_those_that_come_nearer_round_about_begin_anew() -> None:
+    """From the foot on a sphere no place about it is nearer to a point outside; from the point opposite all are."""
+    surface = fitted("round sphere").surface
+    feet = places(fitted("round sphere"), 40)
+    values = surface.basis.values(feet, surface.coefficients)
+    centre = surface.basis.values(places(fitted("round sphere"), 2000, seed=1), surface.coefficients).mean(axis=0)
+    outside = centre + 1.5 * (values - centre)
+    search = _Search(surface.basis, surface.coefficients, feet, outside, 0.05)
+    search.descend(np.arange(40), 8)
+    assert search.elsewhere(np.arange(0, 40, 2)).tolist() == []
+    beyond = _Search(surface.basis, surface.coefficients, feet, centre - 1.5 * (values - centre), 0.05)
+    assert beyond.elsewhere(np.arange(0, 40, 2)).tolist() == list(range(0, 40, 2))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -66,6 +67,21 @@ def test_the_cell_meets_poincares_conditions_and_folds_to_the_orbifold(text):
     polygon.require_conditions(1e-12)
     assert polygon.signature.canonical == ConwaySymbol.parse(text).canonical
     assert polygon.relation_defect < 1e-9
+
+
+@pytest.mark.parametrize("text", ["*237", "*245"])
+def test_the_defect_of_relations_is_that_of_the_rotations_by_wrong_angles(text):
+    """Two mirrors at the angle pi/n + d: n times their product is a rotation by 2 n d about the corner."""
+    polygon = group_of(text).polygon
+    vertices = H2.project(polygon.vertices * [1, 1 + 1e-6, 1 - 2e-6])
+    wrong = replace(polygon, vertices=vertices)
+    expected = 0.0
+    for cycle, order, defect in zip(wrong.word.cycles, wrong.orders, wrong.angle_defects, strict=True):
+        there = H2.carry(vertices[cycle.corners[0]])
+        turn = there @ H2.rotation(2 * order * defect) @ H2.inverse(there)
+        expected = max(expected, np.abs(turn - np.eye(3)).max())
+    assert expected > 1e-6
+    assert wrong.relation_defect == pytest.approx(expected, rel=1e-2)
 
 
 @pytest.mark.parametrize("text", ALL)
@@ -187,6 +203,21 @@ def test_stabilizers_of_the_corners_of_spherical_cells(text, orders):
     corners = {len(stabilizer(group, vertex)) for vertex in group.vertices}
     assert corners <= orders
     assert max(orders) in corners
+
+
+@pytest.mark.parametrize("text", [*FAMILIES, *EXCEPTIONS])
+def test_the_sides_of_a_spherical_domain_are_those_of_the_points_without_a_nearer_image(text):
+    group = orbifold_group(S2, ConwaySymbol.parse(text))
+    x = S2.from_polar(np.arccos(np.linspace(-1, 1, 4000)), 2.399963 * np.arange(4000))
+    distance = S2.distance(S2.origin, S2.act(group.elements[:, None], x))
+    nearest = distance.argmin(axis=0)
+    clear = np.sort(distance, axis=0)[1] - distance.min(axis=0) > 1e-9 if len(distance) > 1 else np.full(4000, True)
+    inside = (x @ group.sides.T > 0).all(axis=1)
+    assert (inside == (distance.min(axis=0) >= distance[0]))[clear].all()
+    assert inside.mean() == pytest.approx(1 / len(group.elements), rel=0.05)
+    assert S2.distance(S2.origin, x[inside]).max() <= group.circumradius + 1e-12
+    assert S2.distance(S2.origin, x[inside]).max() >= group.circumradius - 0.1
+    assert ((nearest == 0) == inside)[clear].all()
 
 
 def test_a_stabilizer_is_carried_along_with_its_point():

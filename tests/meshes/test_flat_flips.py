@@ -156,3 +156,13 @@ def test_the_flips_are_those_of_the_log() -> None:
     again = FlatFlips(mesh, flips.halfedge, flips.crossing)
     for name in ("tail", "twin", "same"):
         np.testing.assert_array_equal(getattr(again.after, name), getattr(flips.after, name))
+
+
+def test_flips_of_what_is_no_pair_of_triangles_are_unsound() -> None:
+    """Two cones with a common loop: the sides 0 and 1, and 3 and 4, are glued within their own faces."""
+    tail = np.array([0, 1, 0, 0, 2, 0])
+    cones = Polyhedron(np.eye(3), np.array([0, 3, 6]), tail, np.array([1, 0, 5, 4, 3, 2]), np.zeros(6, dtype=np.bool_))
+    half = np.full((1, 2), 0.5)
+    assert not FlatFlips(cones, np.array([[0, 1]]), half).is_sound
+    assert not FlatFlips(cones, np.array([[0, 5]]), half).is_sound
+    assert FlatFlips(cones, np.array([[2, 5]]), half).is_sound

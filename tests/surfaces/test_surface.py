@@ -310,3 +310,11 @@ def test_tiny_and_huge_meshes(power: int) -> None:
     assert mesh.normals is not None
     assert np.isfinite(mesh.vertices).all()
     np.testing.assert_allclose(np.linalg.norm(mesh.normals, axis=1), 1, atol=1e-12)
+
+
+@pytest.mark.parametrize("chunk", [1, 16 * 1000, 16 * 10**6])
+def test_total_curvature_counts_every_triangle_once_in_chunks_of_any_size(chunk: int, monkeypatch) -> None:
+    whole = fitted("torus", SIZE).surface
+    expected = whole.total_curvature(4)
+    monkeypatch.setattr("orbiframe.surfaces.surface._CHUNK", chunk)
+    assert whole.total_curvature(4) == pytest.approx(expected, abs=1e-9)

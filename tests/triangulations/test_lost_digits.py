@@ -45,3 +45,13 @@ def test_an_even_map_loses_nothing():
     assert even.digits_lost == pytest.approx(max(0, -np.log10(np.pi / 4)), abs=1e-9)
     areas = triangulated("sphere", 1).areas
     assert even.area_ratio == pytest.approx(areas.min() / areas.max())
+
+
+@pytest.mark.parametrize("at_origin", [False, True])
+def test_a_triangle_without_size_has_lost_all(at_origin):
+    """Also at the origin, where the coordinates are as small as the triangle."""
+    made = triangulated("torus", 2)
+    points = made.points.copy()
+    corners = made.polyhedron.tail[:3]
+    points[corners] = made.orbifold.geometry.origin if at_origin else points[corners[0]]
+    assert crowding_of(replace(made, points=points)).digits_lost == np.inf

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+import reference_surfaces as surfaces
 import spline_checks as checks
 
 from orbiframe import FitError, Points
@@ -87,9 +90,24 @@ def test_a_refined_triangle_lies_in_its_parent() -> None:
     np.testing.assert_array_equal(located(domain, points)[0], face // 4)
 
 
+@pytest.mark.parametrize("place", range(3))
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
-def test_points_that_are_not_finite(bad: float) -> None:
+def test_points_that_are_not_finite(bad: float, place: int) -> None:
     domain = checks.domain("torus")
-    x = np.array([[1.0, 0.1, 0.1], [1.0, bad, 0.0]])
+    x = np.array([[1.0, 0.1, 0.1], [1.0, 0.1, 0.0]])
+    x[1, place] = bad
     with pytest.raises(FitError, match="point 1"):
         Locator(domain).locate(Points(np.zeros(2, dtype=np.intp), x))
+
+
+def test_a_patch_without_triangles_starts_from_those_of_its_neighbour() -> None:
+    """All triangles are placed in patch 0, the first of them is number 0."""
+    domain = checks.domain("torus")
+    change = domain.geometry.translation(0.05, 0.5)
+    two = surfaces.in_two_patches(domain.orbifold, change)
+    both = replace(domain, orbifold=two)
+    face, x = points_inside(domain, 200)
+    here = np.einsum("nij,nj->ni", domain.placement[face], x)
+    for patch, moved in ((0, here), (1, here @ domain.geometry.inverse(change).T)):
+        found, _ = located(both, Points(np.full(200, patch), moved))
+        np.testing.assert_array_equal(found, face)

@@ -12,7 +12,7 @@ _ENDLESS = 2**60
 @compiled(arrays=False)
 def _longer(source, at, count):  # type: ignore[no-untyped-def]
     """Where a length that goes on after its first half byte ends, and the length; past the source: no length."""
-    more = 255
+    more = np.int64(255)
     while more == 255:
         if at >= len(source):
             return at, _ENDLESS
@@ -25,7 +25,7 @@ def _longer(source, at, count):  # type: ignore[no-untyped-def]
 @compiled(arrays=False)
 def fill(source, out):  # type: ignore[no-untyped-def]
     """Fill `out` by sequences of literals and matches; whether it is full exactly where the source ends."""
-    at, to = 0, 0
+    at, to = np.int64(0), np.int64(0)
     while at < len(source):
         token = np.int64(source[at])
         at += 1

@@ -8,6 +8,7 @@ import pytest
 import spline_checks
 from orbiframe_bases.clough_tocher import CloughTocher
 
+from orbiframe.splines.element_basis import _fans
 from orbiframe.testing import contract_tests
 
 NAMES = list(spline_checks.MAKERS)
@@ -88,3 +89,15 @@ def test_order_of_convergence(name: str) -> None:
         basis = CloughTocher(domain.orbifold, domain)
         errors.append(element_checks.error_of_fit(basis, domain, wanted, 15))
     assert 3.2 < np.log2(errors[0] / errors[1]) < 4.8
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_its_micro_triangles_are_known_for_a_fan(name: str) -> None:
+    """Three numbers a triangle then stand for the split, and points find their micro triangles by them."""
+    basis = splines(name)
+    fans = _fans(basis.domain, basis.micro_triangles)
+    assert fans.shape == (basis.domain.face_count, 3)
+    middle = np.einsum("fi,fij->fj", 1 / fans, basis.domain.corners)
+    np.testing.assert_allclose(middle, basis.micro_triangles[:, 0, 2], atol=1e-13)
+    turned = basis.micro_triangles[:, [1, 2, 0]]
+    assert _fans(basis.domain, turned).shape == (basis.domain.face_count, 0)

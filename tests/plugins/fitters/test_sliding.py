@@ -162,3 +162,26 @@ def test_steps_of_many_functions_lead_where_those_of_few_do(make, mapped, exact,
     monkeypatch.setattr(sliding, "_DIRECT", 0)
     iterated = basis.values(exact.points, Sliding().fit(basis, exact))
     assert np.abs(iterated - direct).max() < 0.05 * np.abs(direct - exact.values).max()
+
+
+def test_a_smooth_surface_is_not_pinched_in_one_step(mapped) -> None:
+    """Shrunk about one function to a third of a length at some place is too much; for facets it is not."""
+    from orbiframe.functions import vertex_samples
+    from orbiframe.meshes import Bisection
+
+    basis = Gaussian(mapped.orbifold, mapped, size=200)
+    mesh = mapped.polyhedron
+    whole = Bisection(mesh, mesh, np.full(mesh.face_count, -1), np.arange(mesh.face_count))
+    smooth = vertex_samples(mapped, whole)
+    schedule = (Schedule(1e-6, 1e-4, 0.0),)
+    coefficients = LeastSquares().fit(basis, smooth)
+    slide = _Slide(basis, smooth, schedule)
+    assert slide.energy is not None
+    assert slide.energy.order == 3
+    assert slide._pinched(coefficients, 0.5 * coefficients)  # a quarter of the area
+    assert not slide._pinched(coefficients, 0.65 * coefficients)
+    middle = basis.values(basis.centres, coefficients)
+    near = 0.9 * np.exp(-((middle - middle[0]) ** 2).sum(axis=1) / 4)
+    thinner = coefficients + near[:, None] * (middle[0] - coefficients)
+    assert slide._pinched(coefficients, thinner)
+    assert not _Slide(basis, coordinate_samples(mapped), schedule)._pinched(coefficients, 0.1 * coefficients)
