@@ -1,5 +1,6 @@
 """The public names of orbiframe.surfaces, each with the module it lives in."""
 
+from .equations import heat as heat, poisson as poisson
 from .exact_patches import patches_of as patches_of
 from .field import Field as Field, fit_field as fit_field
 from .gram_schmidt import Orthonormal as Orthonormal, orthonormal as orthonormal
