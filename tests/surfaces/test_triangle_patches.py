@@ -28,7 +28,7 @@ FAMILIES = [
     ("ps3", {}),
     ("ps6", {}),
     ("bernstein", {"degree": 3}),
-    ("bernstein", {"degree": 4, "size": 150}),
+    ("bernstein", {"degree": 4, "size": 400}),
 ]
 TENSORS = [
     {"degree": 3, "counts": (7, 6)},
