@@ -18,6 +18,8 @@ from orbiframe_fields.fitted_surfaces import FittedSurface
 Floats = NDArray[np.float64]
 
 _FITTER = "smoothing"
+# So much of 2 pi may be missing from the total curvature.
+_FOLDED = 0.02
 _NUMBERS = ("k1", "k2", "gaussian", "mean", "distance")
 
 
@@ -58,6 +60,14 @@ def curvature_of(mesh: Polyhedron, fitted: list[FittedSurface], registry: Regist
             column[each.vertices] = values
         total += surface.total_curvature()
         expected += 2 * math.pi * (len(each.vertices) - each.part.edge_count + each.part.face_count)
+    if abs(total - expected) > _FOLDED * 2 * math.pi * len(fitted):
+        warnings.warn(
+            f"the total curvature is {total:.6g}, and by Gauss and Bonnet {expected:.6g}: the surface folds somewhere, "
+            "most likely where the mesh is coarse for its shape, and numbers there are not to be trusted; refine the "
+            "mesh there, or raise basis.size",
+            Notice,
+            stacklevel=2,
+        )
     ordered = {"normal": vectors.pop("normal"), **columns, **vectors}
     return VertexCurvature(turned, ordered, total, expected)
 

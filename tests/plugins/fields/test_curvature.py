@@ -125,3 +125,24 @@ def test_what_cannot_be_measured_or_written_is_said_at_once(orbiframe, cube, tmp
     assert ran.status == 1
     assert not (tmp_path / "out.csv").exists()
     assert "Traceback" not in ran.err
+
+
+@pytest.mark.long
+def test_an_ellipsoid_of_1000_vertices(orbiframe, tmp_path) -> None:
+    """K = 1 / (a b c s)^2 with s = x^2 / a^4 + y^2 / b^4 + z^2 / c^4, on triangles of evenly spread vertices."""
+    from scipy.spatial import ConvexHull
+
+    from orbiframe import Polyhedron
+
+    number, axes = np.arange(1000) + 0.5, np.array([1, 0.7, 0.5])
+    fall, turn = np.arccos(1 - number / 500), np.pi * (1 + np.sqrt(5)) * number
+    x = np.stack([np.cos(turn) * np.sin(fall), np.sin(turn) * np.sin(fall), np.cos(fall)], axis=1)
+    faces = ConvexHull(x).simplices
+    inward = np.linalg.det(x[faces]) < 0
+    faces[inward] = faces[inward][:, ::-1]
+    mesh = saved(tmp_path / "ellipsoid.off", Polyhedron.from_faces(axes * x, faces))
+    assert orbiframe("curvature", mesh, "-o", tmp_path / "out.csv").status == 0
+    found = table(tmp_path / "out.csv")
+    wanted = 1 / (axes.prod() * ((axes * x) ** 2 / axes**4).sum(axis=1)) ** 2
+    assert np.abs(found["gaussian"] / wanted - 1).max() < 0.02
+    assert np.abs(found["gaussian"] - wanted).max() < 0.01 * wanted.max()
