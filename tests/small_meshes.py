@@ -30,3 +30,23 @@ def lists(found: Polyhedron) -> list[list[int]]:
 def words(rows: list[list[int]], glue: str = " ", first: int = 0) -> list[str]:
     """Rows of numbers as text, counted from `first` on."""
     return [glue.join(str(n + first) for n in row) for row in rows]
+
+
+def double_pyramid(n: int) -> Polyhedron:
+    """A double pyramid over a regular polygon of n corners: all triangles are needles about its two tips."""
+    turn = 2 * np.pi * np.arange(n) / n
+    ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(n)], axis=1)
+    i, j = np.arange(n), np.roll(np.arange(n), -1)
+    faces = np.concatenate([np.stack([i, j, np.full(n, n)], 1), np.stack([j, i, np.full(n, n + 1)], 1)])
+    return Polyhedron.from_faces(np.concatenate([ring, [[0, 0, 1], [0, 0, -1]]]), faces)
+
+
+def prism(n: int) -> Polyhedron:
+    """A prism of height 1 over a regular polygon of n corners, whose ends are two faces of n corners."""
+    turn = 2 * np.pi * np.arange(n) / n
+    ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(n)], axis=1)
+    i, j = np.arange(n), np.roll(np.arange(n), -1)
+    sides = np.stack([i, j, n + j, n + i], axis=1).tolist()
+    return Polyhedron.from_faces(
+        np.concatenate([ring, ring + np.array([0, 0, 1])]), [i[::-1].tolist(), (n + i).tolist(), *sides]
+    )

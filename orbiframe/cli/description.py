@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 def description(polyhedron: Polyhedron) -> dict[str, Any]:
     """The surface, counts, sizes, defects and notes of a polyhedron as plain data.
 
-    Lengths are those of the file. volume: signed, null unless the polyhedron is closed and orientable.
+    Lengths are those of the file; unit: that of its format, null where it has none; volume: signed, null unless the
+    polyhedron is closed and orientable.
     """
     import numpy as np
 
@@ -34,6 +35,7 @@ def description(polyhedron: Polyhedron) -> dict[str, Any]:
         "orientable": surface.orientable,
         "euler_characteristic": surface.euler_characteristic,
         "genus": surface.genus,
+        "unit": polyhedron.unit,
         "box": [polyhedron.vertices.min(axis=0).tolist(), polyhedron.vertices.max(axis=0).tolist()],
         "area": measure.area(polyhedron),
         "volume": measure.signed_volume(polyhedron),
@@ -50,6 +52,8 @@ def lines(described: dict[str, Any]) -> Iterator[str]:
     yield described["surface"]
     yield f"{described['vertices']} vertices, {described['edges']} edges, {described['faces']} faces ({sizes})"
     yield f"Euler characteristic {described['euler_characteristic']}"
+    if described["unit"]:
+        yield f"unit {described['unit']}"
     low, high = described["box"]
     sides = " x ".join(_number(b - a) for a, b in zip(low, high, strict=True))
     yield f"box {sides}, from {_point(low)} to {_point(high)}"

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from orbiframe.components.options import checked_options
+from orbiframe.components.shown_text import shown
 from orbiframe.components.suggestion import did_you_mean
 from orbiframe.errors import FitError, FormatError, PluginError
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -129,13 +130,14 @@ def _unknown(path: Path, suffix: str, kind: str, registry: Components) -> str:
 
 
 def _guarded(path: Path, doing: str, component: Callable[..., object], *arguments: object) -> Any:
-    """Call a reader or writer; whatever it raises becomes a FormatError that names the file."""
+    """Call a reader or writer; what it raises becomes a FormatError that names the file and shows its words escaped."""
     try:
         return component(*arguments)
     except (FitError, FormatError, PluginError) as error:
-        raise type(error)(str(error).replace(str(arguments[0]), str(path))) from error
+        parts = str(error).split(str(arguments[0]))
+        raise type(error)(str(path).join(shown(part) for part in parts)) from error
     except (Exception, SystemExit) as error:
-        raise FormatError(f"{path}: {doing} failed: {_described(error)}") from error
+        raise FormatError(f"{path}: {doing} failed: {shown(_described(error))}") from error
 
 
 def _write_whole(path: Path, writer: Callable[..., object], content: object) -> None:

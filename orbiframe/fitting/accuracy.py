@@ -12,6 +12,7 @@ from orbiframe.errors import FitError
 from orbiframe.functions.basis import DifferentiableBasis
 from orbiframe.functions.feet import foot_points, foot_step
 from orbiframe.functions.samples import Samples, places
+from orbiframe.meshes.edge_paths import first_largest
 from orbiframe.meshes.nearest_points import NearestPoints
 from orbiframe.meshes.sizes import vector_areas
 from orbiframe.surfaces.surface import OrbifoldSurface
@@ -124,6 +125,6 @@ def _require_sane(there: Floats, values: Floats, weights: Floats) -> None:
 
 
 def _distances(away: Floats, weights: Floats, where: Floats) -> Distances:
-    share, worst = weights / weights.sum(), int(np.argmax(away))
+    share, worst = weights / weights.sum(), first_largest(away)
     x, y, z = (float(number) for number in where[worst])
     return Distances(float(np.sqrt(share @ away**2)), float(share @ away), float(away[worst]), (x, y, z))

@@ -17,6 +17,8 @@ MEANINGS = ("auto", SMOOTH, SEMI_SMOOTH, FACETS)
 
 # Up to this share of its bending in sharp edges a mesh is taken for smooth, from the other one on for its facets.
 _SMOOTH, _SHARP = 0.20, 0.45
+# So many samples of facets are enough; a mesh of needles would have many more than functions can tell apart.
+_LEAST_SAMPLES, _SAMPLES_PER_FUNCTION = 250_000, 100
 
 
 class Meaning(NamedTuple):
@@ -36,7 +38,7 @@ class Meaning(NamedTuple):
     ) -> Samples:
         """What is approximated, by so many functions; noise: the rms error of a coordinate of a vertex, if known."""
         if self.name == FACETS:
-            return coordinate_samples(triangulation)
+            return coordinate_samples(triangulation, max(_LEAST_SAMPLES, _SAMPLES_PER_FUNCTION * size))
         if self.name == SMOOTH:
             return vertex_samples(triangulation, refinement, noise)
         area = vector_areas(refinement.coarse)

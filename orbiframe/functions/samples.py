@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.errors import FitError
+from orbiframe.meshes.edge_paths import covering_points, dijkstra_forest, edge_graph
+from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
+
+# So many samples are taken of each part; what a product lacks to a whole number by rounding.
+_PER_PART, _WHOLE = 10, 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,14 +79,40 @@ def _require(name: str, good: NDArray[np.bool_] | np.bool_, numbers: Floats, wha
         raise FitError(f"sample {bad[0]} has the {name} {numbers[bad[0]]}; it must be {what}: check the mesh")
 
 
-def coordinate_samples(triangulation: Triangulation) -> Samples:
+def coordinate_samples(triangulation: Triangulation, most: int | None = None) -> Samples:
     """The positions in space at the vertices and the face centroids that have some area, weighted by area in space.
 
     A vertex has a twelfth of the area of each of its triangles, a centroid three quarters: exact for quadratic
     functions on each triangle. The stretch at a vertex is that of its faces together.
+
+    most: where there are more, as on fans of thousands of needles, about so many stand for all, with their areas.
     """
     samples = places(triangulation)
+    if most is not None and len(samples.weights) > most:
+        samples = _evenly(samples, triangulation.polyhedron, most)
     return samples.take(np.flatnonzero(samples.weights > 0))
+
+
+def _evenly(samples: Samples, mesh: Polyhedron, most: int) -> Samples:
+    """About `most` of the samples at vertices and centroids, as many on every part of the surface as its area asks for.
+
+    Parts are what is nearest to vertices that are spread evenly, by the lengths of edges. Of those of one part as many
+    are left out between any two that are kept.
+    """
+    graph, area = edge_graph(mesh), samples.weights.sum()
+    parts = covering_points(graph, float(np.sqrt(_PER_PART * area / most)))
+    owner = dijkstra_forest(graph, parts).owner
+    part = np.concatenate([owner, owner[mesh.triangles[:, 0]]])
+    weight, count = np.bincount(part, weights=samples.weights), np.bincount(part)
+    wanted = np.minimum(np.ceil(most * weight / area), count)
+    order = np.argsort(part, kind="stable")
+    place = np.arange(len(part)) - np.repeat(np.cumsum(count) - count, count)
+    share = (wanted / count)[part[order]]
+    kept = np.sort(order[np.floor((place + 1) * share + _WHOLE) > np.floor(place * share + _WHOLE)])
+    left = np.bincount(part[kept], weights=samples.weights[kept], minlength=len(count))
+    factor = weight / np.maximum(left, np.finfo(float).tiny)
+    found = samples.take(kept)
+    return replace(found, weights=found.weights * factor[part[kept]])
 
 
 def places(triangulation: Triangulation) -> Samples:

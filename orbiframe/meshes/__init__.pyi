@@ -11,6 +11,7 @@ from .edge_paths import (
     dijkstra_forest as dijkstra_forest,
     edge_graph as edge_graph,
     farthest_points as farthest_points,
+    first_largest as first_largest,
     joining_edges as joining_edges,
     outermost_vertex as outermost_vertex,
 )

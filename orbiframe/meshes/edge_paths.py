@@ -1,4 +1,8 @@
-"""Spacing: shortest paths along the edges of a polyhedron, vertices spread evenly by them, points sorted by place."""
+"""Spacing: shortest paths along the edges of a polyhedron, vertices spread evenly by them, points sorted by place.
+
+Lengths that agree to nine digits count as equal, so that on symmetric meshes the numbers of vertices decide, and never
+rounding, which is another one on every processor.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +19,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
+# A length is less than another one if it is less than this times that one; otherwise they count as equal.
+_SHORTER = 1 - 1e-9
 # Steps that put a zero bit between any two of the 32 lowest bits of a number.
 _SPREAD_BITS = (
     (16, 0x0000FFFF0000FFFF),
@@ -83,6 +89,7 @@ def edge_graph(polyhedron: Polyhedron, lengths: ArrayLike | None = None) -> Grap
 def farthest_points(graph: Graph, count: int, *, first: int = 0, radius: float = 0.0) -> Spacing:
     """Vertices spread evenly: each next one is the vertex farthest from all before it, the lowest of equals.
 
+    Those that are equally far are taken one after the other, but for those that the ones before them come nearer to.
     Stops at `count` vertices, or as soon as every vertex lies closer than `radius` to a chosen one, or coincides with
     one. By incremental Dijkstra: a new vertex only searches the part of the graph that becomes its own.
     """
@@ -90,9 +97,14 @@ def farthest_points(graph: Graph, count: int, *, first: int = 0, radius: float =
 
 
 def outermost_vertex(polyhedron: Polyhedron) -> int:
-    """The vertex farthest from the mean of all vertices: a tip, where farthest points may well begin."""
+    """The vertex farthest from the mean of all vertices, the lowest of equals: where farthest points may begin."""
     x = polyhedron.vertices
-    return int(np.argmax(np.linalg.norm(x - x.mean(axis=0), axis=1)))
+    return first_largest(np.linalg.norm(x - x.mean(axis=0), axis=1))
+
+
+def first_largest(values: Floats) -> int:
+    """The index of the largest of some numbers that are not negative, (n,), and the lowest of those that equal it."""
+    return int(np.argmax(values >= _SHORTER * values.max()))
 
 
 def covering_points(graph: Graph, radius: float) -> Ints:
@@ -105,7 +117,7 @@ def covering_points(graph: Graph, radius: float) -> Ints:
 
 
 def dijkstra_forest(graph: Graph, sources: ArrayLike) -> Forest:
-    """The shortest path from the nearest source to every vertex; equal distances go to the source found first."""
+    """The shortest path from the nearest source to every vertex; of equal ones that of the lowest source and vertex."""
     return Forest(*_forest(graph.start, graph.neighbour, graph.length, np.asarray(sources, dtype=np.intp)))
 
 
@@ -143,7 +155,7 @@ def _claim(start, neighbour, length, vertex, number, distance, owner):  # type: 
             continue
         for k in range(start[i], start[i + 1]):
             j, far = neighbour[k], near + length[k]
-            if far < distance[j]:
+            if far < _SHORTER * distance[j]:
                 distance[j], owner[j] = far, number
                 heapq.heappush(queue, (far, j))
 
@@ -155,18 +167,40 @@ def _farthest(start, neighbour, length, count, first, radius):  # type: ignore[n
     chosen = np.empty(min(count, size), dtype=np.intp)
     # distances only fall: the top of `waiting` is the farthest vertex unless its entry is out of date
     waiting = [(-np.inf, vertex) for vertex in range(size)]
-    found, vertex = 0, first
-    while found < len(chosen):
-        chosen[found] = vertex
-        _claim(start, neighbour, length, vertex, found, distance, owner)
-        found += 1
-        top, vertex = waiting[0]
-        while -top != distance[vertex]:
-            heapq.heapreplace(waiting, (-distance[vertex], vertex))
-            top, vertex = waiting[0]
-        if distance[vertex] < radius or distance[vertex] == 0.0:
+    found, farthest = 0, np.inf
+    equals = [first]
+    while True:
+        while equals:
+            vertex = heapq.heappop(equals)
+            if found < len(chosen) and distance[vertex] >= _SHORTER * farthest:
+                chosen[found] = vertex
+                _claim(start, neighbour, length, vertex, found, distance, owner)
+                found += 1
+            else:
+                heapq.heappush(waiting, (-distance[vertex], vertex))
+        if found == len(chosen):
+            break
+        farthest = _farthest_left(waiting, distance, equals)
+        if farthest < _SHORTER * radius or farthest == 0.0:
             break
     return chosen[:found].copy(), owner, distance
+
+
+@compiled
+def _farthest_left(waiting, distance, equals):  # type: ignore[no-untyped-def]
+    """The greatest distance, and in the heap `equals` all vertices that are as far, which wait no longer."""
+    farthest = 0.0
+    while waiting:
+        top, vertex = waiting[0]
+        if -top != distance[vertex]:
+            heapq.heapreplace(waiting, (-distance[vertex], vertex))
+            continue
+        if len(equals) and -top < _SHORTER * farthest:
+            break
+        farthest = max(farthest, -top)
+        heapq.heappush(equals, vertex)
+        heapq.heappop(waiting)
+    return farthest
 
 
 @compiled
@@ -174,7 +208,7 @@ def _covering(start, neighbour, length, radius):  # type: ignore[no-untyped-def]
     distance, owner = np.full(len(start) - 1, radius), np.full(len(start) - 1, -1)
     chosen = [np.intp(0) for _ in range(0)]
     for vertex in range(len(start) - 1):
-        if distance[vertex] < radius:
+        if distance[vertex] < _SHORTER * radius:
             continue
         chosen.append(np.intp(vertex))
         _claim(start, neighbour, length, vertex, vertex, distance, owner)
@@ -215,15 +249,18 @@ def _forest(start, neighbour, length, sources):  # type: ignore[no-untyped-def]
             heapq.heappush(queue, (0.0, vertex))
     reached = 0
     while queue:
-        near, i = heapq.heappop(queue)
+        _, i = heapq.heappop(queue)
         if done[i]:
             continue
-        done[i] = True
+        done[i], near = True, distance[i]
         order[reached] = i
         reached += 1
         for k in range(start[i], start[i + 1]):
             j, far = neighbour[k], near + length[k]
-            if far < distance[j]:
+            if done[j]:
+                continue
+            equal = link[j] >= 0 and _SHORTER * far <= distance[j]
+            if far < _SHORTER * distance[j] or (equal and (owner[i], i) < (owner[j], parent[j])):
                 distance[j], owner[j], link[j], parent[j] = far, owner[i], k, i
                 heapq.heappush(queue, (far, j))
     return distance, owner, link, parent, order[:reached].copy()

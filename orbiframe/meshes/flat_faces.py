@@ -29,6 +29,7 @@ def with_faces(polyhedron: Polyhedron, corners: Ints, start: Ints, size: Ints, o
         normals=polyhedron.normals,
         colors=polyhedron.colors,
         face_colors=None if polyhedron.face_colors is None else polyhedron.face_colors[owner],
+        unit=polyhedron.unit,
     )
 
 

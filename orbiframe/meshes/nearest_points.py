@@ -4,70 +4,97 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from orbiframe.compiled.decorator import compiled
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.triangle_boxes import LEAF, TriangleBoxes
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
-
-_FIRST = 8  # triangles that are tried first, those with the nearest centroids
 
 
 class NearestPoints:
-    """Distances of points to a triangle mesh: all triangles are tried whose centroid is near enough to matter."""
+    """Distances of points to a triangle mesh; of the boxes only those are opened that hold something nearer."""
 
     def __init__(self, mesh: Polyhedron) -> None:
-        self._corners = np.ascontiguousarray(mesh.vertices[mesh.triangles])
-        centroid = self._corners.mean(axis=1)
-        self._tree = cKDTree(centroid)
-        self._radius = float(np.linalg.norm(self._corners - centroid[:, None], axis=2).max())
+        corners = mesh.vertices[mesh.triangles]
+        self._boxes = TriangleBoxes.of(corners)
+        self._corners = np.ascontiguousarray(corners[self._boxes.order])
 
     def distance(self, points: Floats) -> Floats:
         """The distance of each point to the mesh, (n,)."""
-        found = np.empty(len(points))
-        open_, count = np.arange(len(points)), min(_FIRST, len(self._corners))
-        while len(open_):
-            away, face = self._tree.query(points[open_], k=count)
-            away, face = (np.reshape(part, (len(open_), -1)) for part in (away, face))
-            found[open_] = _least(points[open_], self._corners, face)
-            certain = (found[open_] <= away[:, -1] - self._radius) | (count == len(self._corners))
-            open_, count = open_[~certain], min(4 * count, len(self._corners))
-        return found
+        return np.sqrt(self.searched(points)[0])
+
+    def searched(self, points: Floats) -> tuple[Floats, int]:
+        """The squares of the distances, (n,), and how many triangles were tried for all points together."""
+        points = np.ascontiguousarray(points, dtype=np.float64)
+        squares, tried = _search(points, self._corners, *self._boxes[1:])
+        return np.asarray(squares), int(tried)
 
 
 @compiled
-def _least(points, corners, face):  # type: ignore[no-untyped-def]
-    """The least distance of each point to its triangles (n, k)."""
-    found = np.empty(len(points))
+def _search(points, corners, axes, low, high):  # type: ignore[no-untyped-def]
+    """The least squared distance of each point to the triangles, and how many triangles were tried."""
+    found, tried, nearest = np.empty(len(points)), 0, 0
+    first_leaf = len(low) // 2
+    stack, away = np.empty(64, dtype=np.intp), np.empty(64)
     for n in range(len(points)):
-        least = np.inf
-        for k in range(face.shape[1]):
-            least = min(least, _square(points[n], corners[face[n, k]]))
-        found[n] = np.sqrt(least)
-    return found
+        x, y, z = points[n, 0], points[n, 1], points[n, 2]
+        # Points in a row are near to each other: the triangle of the one before is a good one to begin with.
+        least = _square(x, y, z, corners[nearest])
+        stack[0], away[0], size = 0, 0.0, 1
+        while size:
+            size -= 1
+            box = stack[size]
+            if not away[size] < least:
+                continue
+            if box >= first_leaf:
+                for k in range(LEAF * (box - first_leaf), min(LEAF * (box - first_leaf + 1), len(corners))):
+                    tried += 1
+                    square = _square(x, y, z, corners[k])
+                    if square < least:
+                        least, nearest = square, k
+                continue
+            for child in range(2 * box + 1, 2 * box + 3):
+                stack[size], away[size] = child, _to_box(x, y, z, axes[child], low[child], high[child])
+                size += 1
+            if away[size - 2] < away[size - 1]:  # the nearer one is opened first
+                stack[size - 2], stack[size - 1] = stack[size - 1], stack[size - 2]
+                away[size - 2], away[size - 1] = away[size - 1], away[size - 2]
+        found[n] = least
+    return found, tried
 
 
 @compiled(inline=True)
-def _square(p, corners):  # type: ignore[no-untyped-def]
+def _to_box(x, y, z, axes, low, high):  # type: ignore[no-untyped-def]
+    """The squared distance of a point to a box."""
+    total = 0.0
+    for k in range(3):
+        along = axes[k, 0] * x + axes[k, 1] * y + axes[k, 2] * z
+        gap = max(low[k] - along, along - high[k], 0.0)
+        total += gap * gap
+    return total
+
+
+@compiled(inline=True)
+def _square(x, y, z, corners):  # type: ignore[no-untyped-def]
     """The squared distance of a point to a triangle: to its plane over the inside, else to the nearest side."""
-    a, b, c = corners[0], corners[1], corners[2]
-    u, v, w = b - a, c - a, p - a
-    uu, uv, vv = u @ u, u @ v, v @ v
-    wu, wv = w @ u, w @ v
+    u0, u1, u2 = corners[1, 0] - corners[0, 0], corners[1, 1] - corners[0, 1], corners[1, 2] - corners[0, 2]
+    v0, v1, v2 = corners[2, 0] - corners[0, 0], corners[2, 1] - corners[0, 1], corners[2, 2] - corners[0, 2]
+    w0, w1, w2 = x - corners[0, 0], y - corners[0, 1], z - corners[0, 2]
+    uu, uv, vv = u0 * u0 + u1 * u1 + u2 * u2, u0 * v0 + u1 * v1 + u2 * v2, v0 * v0 + v1 * v1 + v2 * v2
+    wu, wv = w0 * u0 + w1 * u1 + w2 * u2, w0 * v0 + w1 * v1 + w2 * v2
     whole = uu * vv - uv * uv
     s, t = wu * vv - wv * uv, wv * uu - wu * uv
     if whole > 0 and s >= 0 and t >= 0 and s + t <= whole:
-        away = w - (s / whole) * u - (t / whole) * v
-        return away @ away
-    return min(_to_side(p, a, b), min(_to_side(p, b, c), _to_side(p, c, a)))
+        s, t = s / whole, t / whole
+        return (w0 - s * u0 - t * v0) ** 2 + (w1 - s * u1 - t * v1) ** 2 + (w2 - s * u2 - t * v2) ** 2
+    third = _to_side(w0 - u0, w1 - u1, w2 - u2, v0 - u0, v1 - u1, v2 - u2)
+    return min(_to_side(w0, w1, w2, u0, u1, u2), _to_side(w0, w1, w2, v0, v1, v2), third)
 
 
 @compiled(inline=True)
-def _to_side(p, a, b):  # type: ignore[no-untyped-def]
-    side, w = b - a, p - a
-    length = side @ side
-    share = min(max((w @ side) / length, 0.0), 1.0) if length > 0 else 0.0
-    away = w - share * side
-    return away @ away
+def _to_side(w0, w1, w2, u0, u1, u2):  # type: ignore[no-untyped-def]
+    """The squared distance of w to the segment from the origin to u."""
+    length = u0 * u0 + u1 * u1 + u2 * u2
+    share = min(max((w0 * u0 + w1 * u1 + w2 * u2) / length, 0.0), 1.0) if length > 0 else 0.0
+    return (w0 - share * u0) ** 2 + (w1 - share * u1) ** 2 + (w2 - share * u2) ** 2

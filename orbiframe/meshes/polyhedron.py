@@ -31,7 +31,8 @@ class Polyhedron:
 
     vertices: (V, 3); offsets: (F + 1,), face f has the halfedges offsets[f] to offsets[f + 1] - 1; tail, twin, same:
     (H,); twin is -1 where an edge lies in one face only, or in three or more. Optional, as far as a file has them:
-    normals (V, 3), colors (V, 3 or 4) and face_colors (F, 3 or 4), colours from 0 to 1.
+    normals (V, 3), colors (V, 3 or 4) and face_colors (F, 3 or 4), colours from 0 to 1; unit, that of the coordinates:
+    "millimetre" or "metre".
     """
 
     vertices: Floats
@@ -42,6 +43,7 @@ class Polyhedron:
     normals: Floats | None = None
     colors: Floats | None = None
     face_colors: Floats | None = None
+    unit: str | None = None
 
     @classmethod
     def from_corners(
@@ -53,6 +55,7 @@ class Polyhedron:
         normals: ArrayLike | None = None,
         colors: ArrayLike | None = None,
         face_colors: ArrayLike | None = None,
+        unit: str | None = None,
     ) -> Polyhedron:
         """The polyhedron of faces given by their corners: halfedges with the same two ends are twins.
 
@@ -64,8 +67,8 @@ class Polyhedron:
         starts = np.ascontiguousarray(offsets, dtype=np.intp)
         _require_corners(len(points), starts, ends)
         twin, same = _twins_by_ends(len(points), starts, ends)
-        extra = [None if a is None else np.asarray(a, dtype=np.float64) for a in (normals, colors, face_colors)]
-        return cls(points, starts, ends, twin, same, *extra)
+        tables = [None if a is None else np.asarray(a, dtype=np.float64) for a in (normals, colors, face_colors)]
+        return cls(points, starts, ends, twin, same, tables[0], tables[1], tables[2], unit)
 
     @classmethod
     def from_faces(cls, vertices: ArrayLike, faces: Sequence[Sequence[int]] | NDArray[np.integer]) -> Polyhedron:

@@ -59,6 +59,7 @@ def weld(polyhedron: Polyhedron, tolerance: float) -> Repair:
         normals=_mean_normals(polyhedron.normals, label),
         colors=_means(polyhedron.colors, label),
         face_colors=polyhedron.face_colors,
+        unit=polyhedron.unit,
     )
     simple, folded = _simple(merged)
     if polyhedron.face_count and not simple.face_count:
@@ -224,6 +225,7 @@ def _relabelled(polyhedron: Polyhedron, source: Ints, tail: Ints) -> Polyhedron:
         normals=normals,
         colors=colors,
         face_colors=polyhedron.face_colors,
+        unit=polyhedron.unit,
     )
 
 

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from orbiframe.compiled.decorator import compiled
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.triangle_boxes import LEAF, TriangleBoxes
 
 Ints = NDArray[np.intp]
-
-_SIZES = 1.5  # triangles whose radii differ by less than this factor are searched together
 
 
 def self_intersecting(mesh: Polyhedron) -> Ints:
@@ -20,52 +18,71 @@ def self_intersecting(mesh: Polyhedron) -> Ints:
     Two triangles that share an edge are not tried, and of two that share a vertex only the sides opposite to it, so
     that a fold along an edge is no intersection.
     """
-    corners = np.ascontiguousarray(mesh.vertices[mesh.triangles])
-    found = np.zeros(len(corners), dtype=np.bool_)
-    for first, second in _near_pairs(corners):
-        _mark(corners, mesh.triangles, first, second, found)
-    return np.flatnonzero(found)
+    return intersections(mesh)[0]
 
 
-def _near_pairs(corners: NDArray[np.float64]) -> list[tuple[Ints, Ints]]:
-    """Pairs of triangles whose balls about the centroids meet, found between classes of triangles of one size."""
-    centroid = corners.mean(axis=1)
-    radius = np.linalg.norm(corners - centroid[:, None], axis=2).max(axis=1)
-    level = np.floor(np.log(np.maximum(radius, np.finfo(float).tiny)) / np.log(_SIZES))
-    classes = [np.flatnonzero(level == value) for value in np.unique(level)]
-    trees = [cKDTree(centroid[members]) for members in classes]
-    pairs = []
-    for i, large in enumerate(classes):
-        for j, small in enumerate(classes[: i + 1]):
-            reach = float(radius[large].max() + radius[small].max())
-            near = trees[i].sparse_distance_matrix(trees[j], reach, output_type="coo_matrix")
-            a, b = large[near.row], small[near.col]
-            met = (near.data <= radius[a] + radius[b]) & ((a < b) | (i != j))
-            pairs.append((a[met], b[met]))
-    return pairs
+def intersections(mesh: Polyhedron) -> tuple[Ints, int]:
+    """The triangles that meet others, and how many pairs of an edge and a triangle were tried."""
+    corners = mesh.vertices[mesh.triangles]
+    boxes = TriangleBoxes.of(corners)
+    triangles, edges = mesh.triangles[boxes.order], np.flatnonzero(mesh.representative)
+    sorted_ = np.ascontiguousarray(corners[boxes.order]), np.ascontiguousarray(triangles)
+    ends = mesh.vertices[mesh.tail[edges]], mesh.vertices[mesh.head[edges]]
+    edge_of = mesh.tail[edges], mesh.head[edges]
+    common = boxes.common_vertices(mesh.triangles)
+    passing, passed, tried = _search(*ends, *edge_of, *sorted_, *boxes[1:], common)
+    twins = mesh.twin[edges[passing]]
+    found = np.zeros(mesh.face_count, dtype=np.bool_)
+    found[mesh.face[edges[passing]]] = found[mesh.face[twins[twins >= 0]]] = True
+    found[boxes.order[passed]] = True
+    return np.flatnonzero(found), int(tried)
 
 
 @compiled
-def _mark(corners, triangles, first, second, found):  # type: ignore[no-untyped-def]
-    for k in range(len(first)):
-        f, g = first[k], second[k]
-        if found[f] and found[g]:
-            continue
-        shared, in_f, in_g = 0, -1, -1
-        for i in range(3):
-            for j in range(3):
-                if triangles[f, i] == triangles[g, j]:
-                    shared, in_f, in_g = shared + 1, i, j
-        if shared > 1:
-            continue
-        if shared == 1:
-            meet = _side_meets(corners[f], in_f, corners[g]) or _side_meets(corners[g], in_g, corners[f])
-        else:
-            meet = False
-            for i in range(3):
-                meet = meet or _side_meets(corners[f], i, corners[g]) or _side_meets(corners[g], i, corners[f])
-        if meet:
-            found[f] = found[g] = True
+def _search(start, end, tail, head, corners, triangles, axes, low, high, common):  # type: ignore[no-untyped-def]
+    """Which edges pass through triangles, which triangles are passed through, and how many pairs were tried.
+
+    An edge is not tried with triangles that have one of its ends as a corner, nor with boxes all of whose triangles do:
+    at a vertex of thousands of triangles all of their boxes meet.
+    """
+    passing, passed = np.zeros(len(tail), dtype=np.bool_), np.zeros(len(corners), dtype=np.bool_)
+    stack, first_leaf, tried = np.empty(64, dtype=np.intp), len(low) // 2, 0
+    for e in range(len(tail)):
+        i, j, p, q = tail[e], head[e], start[e], end[e]
+        stack[0], size = 0, 1
+        while size:
+            size -= 1
+            box = stack[size]
+            if _all_at(i, j, common[box]) or _apart(p, q, axes[box], low[box], high[box]):
+                continue
+            if box < first_leaf:
+                stack[size], stack[size + 1] = 2 * box + 1, 2 * box + 2
+                size += 2
+                continue
+            for k in range(LEAF * (box - first_leaf), min(LEAF * (box - first_leaf + 1), len(corners))):
+                tried += 1
+                if not _all_at(i, j, triangles[k]) and _passes(p, q, corners[k]):
+                    passing[e] = passed[k] = True
+    return passing, passed, tried
+
+
+@compiled(inline=True)
+def _all_at(i, j, corners):  # type: ignore[no-untyped-def]
+    """Whether one of two vertices is among three."""
+    at_i = corners[0] == i or corners[1] == i or corners[2] == i
+    return at_i or corners[0] == j or corners[1] == j or corners[2] == j
+
+
+@compiled(inline=True)
+def _apart(p, q, axes, low, high):  # type: ignore[no-untyped-def]
+    """Whether a segment lies on one side of a box."""
+    for k in range(3):
+        a = axes[k, 0] * p[0] + axes[k, 1] * p[1] + axes[k, 2] * p[2]
+        b = axes[k, 0] * q[0] + axes[k, 1] * q[1] + axes[k, 2] * q[2]
+        margin = 1e-12 * (abs(low[k]) + abs(high[k]))
+        if max(a, b) < low[k] - margin or min(a, b) > high[k] + margin:
+            return True
+    return False
 
 
 @compiled(inline=True)
@@ -76,10 +93,9 @@ def _volume(a, b, c, d):  # type: ignore[no-untyped-def]
     return u0 * (v1 * w2 - v2 * w1) + u1 * (v2 * w0 - v0 * w2) + u2 * (v0 * w1 - v1 * w0)
 
 
-@compiled
-def _side_meets(x, corner, y):  # type: ignore[no-untyped-def]
-    """Whether the side of triangle x opposite to a corner passes through the inside of triangle y."""
-    p, q = x[(corner + 1) % 3], x[(corner + 2) % 3]
+@compiled(inline=True)
+def _passes(p, q, y):  # type: ignore[no-untyped-def]
+    """Whether the segment from p to q passes through the inside of triangle y."""
     a, b = _volume(y[0], y[1], y[2], p), _volume(y[0], y[1], y[2], q)
     if a * b >= 0:
         return False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -154,10 +154,19 @@ class OrbifoldSurface:
             face, barycentric = self.refinement.locate(face, barycentric)
         points = self.triangulation.locate(face, barycentric)
         if not isinstance(self.basis, DifferentiableBasis):
-            return Tessellation(mesh.polyhedron.with_vertices(self.evaluate(points)), points)
+            return Tessellation(self._in_unit(mesh.polyhedron.with_vertices(self.evaluate(points))), points)
         d = self._derivatives(points, 1)
         normals = _unit(np.cross(d[1], d[2])) * self.triangulation.face_signs[face, None]
-        return Tessellation(mesh.polyhedron.with_vertices(self.origin + self.scale * d[0], normals), points)
+        placed = mesh.polyhedron.with_vertices(self.origin + self.scale * d[0], normals)
+        return Tessellation(self._in_unit(placed), points)
+
+    @property
+    def unit(self) -> str | None:
+        """The unit of coordinates, as far as the mesh has one: "millimetre" or "metre"."""
+        return self.refinement.coarse.unit
+
+    def _in_unit(self, mesh: Polyhedron) -> Polyhedron:
+        return replace(mesh, unit=self.unit)
 
     def _unit_curvature(self, points: Points) -> Curvature:
         """The curvature of the surface before it is scaled: no square of a very large or very small number."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -18,7 +20,7 @@ from OCP.StepBasic import StepBasic_Product
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
 from OCP.TCollection import TCollection_HAsciiString
 
-from orbiframe import FitError, OrbifoldSurface, __version__
+from orbiframe import FitError, Notice, OrbifoldSurface, __version__
 from orbiframe.surfaces import PeriodicPatch, patches_of
 from orbiframe_exact.shapes import shape_of
 
@@ -33,10 +35,11 @@ _AS_TOPOLOGY = 1  # IGES: shells and solids that share their edges, not a heap o
 def write_step(path: Path, surface: OrbifoldSurface) -> None:
     """The surface as exact rational patches in a STEP file (AP214, millimetres), three for each micro triangle.
 
-    A solid where it has an inside, else a shell; a tensor product is one periodic surface. Raises FitError for a
-    surface without exact patches, or where Open CASCADE fails.
+    A surface in metres is converted, with a notice; one of no unit is written as it is. A solid where it has an inside,
+    else a shell; a tensor product is one periodic surface. Raises FitError for a surface without exact patches, or
+    where Open CASCADE fails.
     """
-    patches = patches_of(surface)
+    patches = patches_of(_in_millimetres(path, surface))
     shape = shape_of(patches)
     _silence()
     writer = STEPControl_Writer()
@@ -51,13 +54,21 @@ def write_step(path: Path, surface: OrbifoldSurface) -> None:
 
 def write_iges(path: Path, surface: OrbifoldSurface) -> None:
     """The surface as exact rational patches in an IGES file (5.3, millimetres); see `write_step`."""
-    shape = shape_of(patches_of(surface))
+    shape = shape_of(patches_of(_in_millimetres(path, surface)))
     _silence()
     writer = IGESControl_Writer("MM", _AS_TOPOLOGY)
     _require(bool(writer.AddShape(shape)), "convert the shape to IGES")
     writer.ComputeModel()
     _sign_iges(writer)
     Path(path).write_bytes(_iges_text(writer.Model()))
+
+
+def _in_millimetres(path: Path, surface: OrbifoldSurface) -> OrbifoldSurface:
+    if surface.unit != "metre":
+        return surface
+    told = "coordinates are converted from metres to millimetres (times 1000)"
+    warnings.warn(f"{path.name}: {told}", Notice, stacklevel=3)
+    return replace(surface, origin=1000 * surface.origin, scale=1000 * surface.scale)
 
 
 def _iges_text(model: Any) -> bytes:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from orbiframe import Marking, Polyhedron
 from orbiframe.groups import marking_along
-from orbiframe.meshes import Graph, dijkstra_forest, edge_graph, farthest_points, joining_edges
+from orbiframe.meshes import Graph, dijkstra_forest, edge_graph, farthest_points, first_largest, joining_edges
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -43,7 +43,7 @@ def tree_cotree(polyhedron: Polyhedron, *, bases: Annotated[int, Ge(1)] = 8) -> 
 def _outermost(polyhedron: Polyhedron) -> int:
     """The vertex farthest from the mean of all corners: the same one however vertices and faces are numbered."""
     points = polyhedron.vertices[polyhedron.tail]
-    return int(polyhedron.tail[np.linalg.norm(points - points.mean(axis=0), axis=1).argmax()])
+    return int(polyhedron.tail[first_largest(np.linalg.norm(points - points.mean(axis=0), axis=1))])
 
 
 def _cut(polyhedron: Polyhedron, graph: Graph, base: int) -> _Cut:

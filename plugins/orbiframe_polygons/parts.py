@@ -49,14 +49,14 @@ class Part:
         return Part(points, self.sizes, place[self.tail], *tables)
 
 
-def polyhedron_of(parts: Sequence[Part]) -> Polyhedron:
-    """All parts side by side; normals and colours where every part has them."""
+def polyhedron_of(parts: Sequence[Part], unit: str | None = None) -> Polyhedron:
+    """All parts side by side, in a unit or in none; normals and colours where every part has them."""
     starts = offsets_of(np.array([len(part.points) for part in parts], dtype=np.intp))
     tail = np.concatenate([part.tail + start for part, start in zip(parts, starts[:-1], strict=True)])
     sizes = np.concatenate([part.sizes for part in parts])
     normals, colors = (_stacked([getattr(part, name) for part in parts]) for name in ("normals", "colors"))
     points = np.concatenate([part.points for part in parts])
-    return Polyhedron.from_corners(points, offsets_of(sizes), tail, normals=normals, colors=colors)
+    return Polyhedron.from_corners(points, offsets_of(sizes), tail, normals=normals, colors=colors, unit=unit)
 
 
 def reversed_faces(sizes: Ints, tail: Ints) -> Ints:

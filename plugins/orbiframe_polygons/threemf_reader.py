@@ -53,9 +53,9 @@ def read(path: Path) -> Polyhedron:
     parts = [part for number, transform in model.items for part in model.built(number, transform)]
     if not parts:
         raise FormatError(f"{path}: the model builds no object with triangles")
-    return polyhedron_of(
-        [part.moved(model.scale * np.eye(3), np.zeros(3)) for part in parts] if model.scale != 1 else parts
-    )
+    if model.scale != 1:
+        parts = [part.moved(model.scale * np.eye(3), np.zeros(3)) for part in parts]
+    return polyhedron_of(parts, "millimetre")
 
 
 class _Archive:

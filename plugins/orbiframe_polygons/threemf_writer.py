@@ -11,6 +11,7 @@ from orbiframe.files import require_triangles
 from orbiframe_polygons.lines import columns_of, shaped_text
 from orbiframe_polygons.loss import tell_loss
 from orbiframe_polygons.threemf_reader import MODEL, RELATIONS
+from orbiframe_polygons.units import in_unit
 
 OPC = "http://schemas.openxmlformats.org/package/2006"
 THREEMF = "http://schemas.microsoft.com/3dmanufacturing"
@@ -29,8 +30,10 @@ RELATION = (
 def write(path: Path, polyhedron: Polyhedron) -> None:
     """Write the triangles as one object, in millimetres, each number with the digits that round-trip.
 
-    Raises FormatError for faces that are no triangles. Normals and colours are left out, with a warning.
+    Coordinates in metres are converted, with a notice; those of no unit are written as they are. Raises
+    FormatError for faces that are no triangles. Normals and colours are left out, with a warning.
     """
+    polyhedron = in_unit(path, polyhedron, "millimetre")
     require_triangles(path, polyhedron, "3MF")
     tell_loss(path, "colours", polyhedron.colors is not None or polyhedron.face_colors is not None)
     tell_loss(path, "normals of vertices", polyhedron.normals is not None)

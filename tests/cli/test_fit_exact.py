@@ -4,7 +4,13 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
 import pytest
+from fitted import REGISTRY
+
+from orbiframe.files.gate import write
+from orbiframe.meshes.disjoint_union import disjoint_union
+from orbiframe.testing.polyhedra import reference_polyhedra
 
 
 @pytest.fixture
@@ -45,3 +51,19 @@ def test_bumps_have_no_exact_form(orbiframe, cube, tmp_path):
     assert ran.status == 1
     assert "--basis ps2" in ran.err
     assert not (tmp_path / "a.step").exists()
+
+
+def test_several_parts_are_no_exact_surface(orbiframe, tmp_path):
+    both = disjoint_union([reference_polyhedra()["cube"], moved(reference_polyhedra()["cube"])])
+    write(tmp_path / "two.off", both, REGISTRY)
+    ran = orbiframe("fit", tmp_path / "two.off", "-o", tmp_path / "a.vtu", "--basis", "ps2", "--size", 40)
+    assert ran.status == 2
+    assert "2 components" in ran.err
+    assert "--component" in ran.err
+    assert not (tmp_path / "a.vtu").exists()
+    wanted = ("--component", 2, "--basis", "ps2", "--size", 40)
+    assert orbiframe("fit", tmp_path / "two.off", "-o", tmp_path / "a.vtu", *wanted).status == 0
+
+
+def moved(mesh):
+    return mesh.with_vertices(mesh.vertices + np.array([5.0, 0, 0]))

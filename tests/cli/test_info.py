@@ -51,6 +51,7 @@ def test_json_has_the_promised_keys(orbiframe, cube):
         "orientable": True,
         "euler_characteristic": 2,
         "genus": 0,
+        "unit": None,
         "box": [[0, 0, 0], [1, 1, 1]],
         "area": 6,
         "volume": 1,
@@ -59,6 +60,28 @@ def test_json_has_the_promised_keys(orbiframe, cube):
         "defects": [],
         "notes": [],
     }
+
+
+@pytest.mark.parametrize(("suffix", "unit"), [(".3mf", "millimetre"), (".glb", "metre"), (".stl", None)])
+def test_the_unit_of_a_format_is_a_line_and_a_key(orbiframe, cube, suffix, unit):
+    made = cube.with_suffix(suffix)
+    assert orbiframe("convert", cube, made, "--triangulate").status == 0
+    told = [line for line in orbiframe("info", made).out.splitlines() if line.startswith("unit")]
+    assert told == ([f"unit {unit}"] if unit else [])
+    assert json.loads(orbiframe("info", made, "--json").out)["unit"] == unit
+
+
+@pytest.mark.parametrize("options", [(), ("--orient",), ("--weld", "1e-9"), ("--drop-degenerate",)])
+def test_a_length_stays_what_it_is_from_metres_to_millimetres_and_back(orbiframe, cube, options):
+    metres, millimetres = cube.with_suffix(".glb"), cube.with_suffix(".3mf")
+    assert orbiframe("convert", cube, metres, "--triangulate").status == 0
+    ran = orbiframe("convert", metres, millimetres, "--strict", *options)
+    assert ran.status == 0
+    assert "converted from metres to millimetres (times 1000)" in ran.err
+    assert "box 1000 x 1000 x 1000" in orbiframe("info", millimetres).out
+    again = cube.with_name("again.glb")
+    assert "(times 0.001)" in orbiframe("convert", millimetres, again, *options).err
+    assert "box 1 x 1 x 1" in orbiframe("info", again).out
 
 
 @pytest.mark.parametrize(

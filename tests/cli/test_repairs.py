@@ -121,6 +121,16 @@ def test_a_quiet_fit_says_nothing(orbiframe, damaged, tmp_path):
     assert orbiframe("fit", damaged("weld"), "-o", tmp_path / "out.ply", *options) == (0, "", "")
 
 
+@pytest.mark.parametrize(("tolerance", "vertices"), [("0", 24), ("1e-4", 24), ("0.01", 8)])
+def test_points_are_joined_that_are_as_near_as_the_tolerance(orbiframe, damaged, tmp_path, tolerance, vertices):
+    """The corners of six squares, moved apart by some thousandths."""
+    path, apart = tmp_path / "apart.off", taken_apart(MESHES["cube"])
+    gate.write(path, apart.with_vertices(apart.vertices + 1e-3 * np.random.default_rng(0).random((24, 3))), REGISTRY)
+    ran = orbiframe("convert", path, tmp_path / "out.off", "--weld", tolerance)
+    assert ran.status == 0
+    assert len(gate.read(tmp_path / "out.off", REGISTRY).vertices) == vertices
+
+
 @pytest.mark.parametrize(
     "option", [["--weld", "-1"], ["--weld", "inf"], ["--weld", "x"], ["--component", "0"], ["--component", "some"]]
 )

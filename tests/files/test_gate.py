@@ -135,6 +135,17 @@ def test_whatever_a_reader_raises_becomes_a_format_error(path, error):
     assert "KeyError" not in str(raised.value)
 
 
+@pytest.mark.parametrize("kind", [FormatError, ValueError])
+def test_words_from_a_file_are_shown_escaped(path, kind):
+    def reader(given):
+        raise kind(f"{given}: found \x7f\x1b[31m\u202e")
+
+    with pytest.raises(FormatError) as raised:
+        gate.read(path, Shelf(one=reader))
+    assert str(raised.value).startswith(f"{path}: ")
+    assert str(raised.value).endswith(r"found \x7f\x1b[31m\u202e")
+
+
 def test_an_interrupt_is_no_bad_file(path):
     with pytest.raises(KeyboardInterrupt):
         gate.read(path, raising(KeyboardInterrupt()))

@@ -62,3 +62,20 @@ def test_places_without_area_are_no_samples() -> None:
     assert len(samples.weights) == len(vertices) + mesh.face_count - 2
     assert (samples.weights > 0).all()
     assert np.isfinite(samples.stretch).all()
+
+
+@pytest.mark.parametrize("name", RECIPES)
+def test_some_stand_for_all(name: str) -> None:
+    """The area of all, second moments nearly so, no part of the surface without a sample, and some of the old ones."""
+    made = reference_triangulations()[name]
+    whole = coordinate_samples(made)
+    most = len(whole.weights) // 4
+    some = coordinate_samples(made, most)
+    assert most / 2 < len(some.weights) < 1.6 * most
+    assert some.weights.sum() == pytest.approx(whole.weights.sum(), rel=1e-12)
+    moments = [np.einsum("n,ni,nj->ij", s.weights, s.values, s.values) for s in (whole, some)]
+    np.testing.assert_allclose(moments[1], moments[0], atol=0.2 * np.abs(moments[0]).max())
+    away = np.linalg.norm(whole.values[:, None] - some.values, axis=2)
+    assert (away.min(axis=0) == 0).all()
+    assert away.min(axis=1).max() < 6 * np.sqrt(whole.weights.sum() / most)
+    assert len(coordinate_samples(made, len(whole.weights)).weights) == len(whole.weights)

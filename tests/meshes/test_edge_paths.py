@@ -13,6 +13,7 @@ from orbiframe.meshes.edge_paths import (
     dijkstra_forest,
     edge_graph,
     farthest_points,
+    first_largest,
     joining_edges,
 )
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -95,6 +96,54 @@ def test_a_radius_stops_the_choice_as_soon_as_it_covers(graph: Graph) -> None:
     spacing = farthest_points(graph, 10**6, radius=0.7)
     assert spacing.distance.max() < 0.7
     assert all_distances(graph)[spacing.chosen[:-1]].min(axis=0).max() >= 0.7
+
+
+def ring_of_grid(noise: float, seed: int) -> Graph:
+    """A regular torus in the plane of its indices, whose equal lengths differ by a little noise."""
+    torus = bumpy_torus(12, 8)
+    graph = edge_graph(torus, np.ones(len(torus.tail)))
+    edge = np.minimum(graph.halfedge, torus.twin[graph.halfedge])
+    factor = 1 + noise * np.random.default_rng(seed).uniform(-1, 1, len(torus.tail))
+    return graph._replace(length=graph.length * factor[edge])
+
+
+@pytest.mark.parametrize("noise", [1e-15, 1e-12])
+def test_among_equals_rounding_decides_nothing(noise: float) -> None:
+    """All edges are as long as each other, so nearly every choice is one among many equals."""
+    plain = ring_of_grid(0.0, 0)
+    for seed in range(20):
+        noisy = ring_of_grid(noise, seed)
+        for count, radius in ((7, 0.0), (30, 0.0), (96, 2.0)):
+            expected, found = (farthest_points(graph, count, first=5, radius=radius) for graph in (plain, noisy))
+            np.testing.assert_array_equal(found.chosen, expected.chosen)
+            np.testing.assert_array_equal(found.owner, expected.owner)
+        np.testing.assert_array_equal(covering_points(noisy, 2.0), covering_points(plain, 2.0))
+        expected, found = (dijkstra_forest(graph, [90, 3, 40]) for graph in (plain, noisy))
+        np.testing.assert_array_equal(found.owner, expected.owner)
+        np.testing.assert_array_equal(found.link, expected.link)
+
+
+def test_every_farthest_point_is_as_far_as_any_and_the_lowest_not_yet_tried() -> None:
+    graph = ring_of_grid(0.0, 0)
+    table, chosen = all_distances(graph), farthest_points(graph, 96, first=5).chosen
+    assert len(np.unique(chosen)) == 96
+    for k in range(1, 96):
+        gap = table[chosen[:k]].min(axis=0)
+        assert gap[chosen[k]] == gap.max()
+    assert chosen[1] == table[5].argmax()
+
+
+def test_sources_at_no_distance_from_each_other_stay_sources() -> None:
+    flat = Polyhedron.from_faces([[0, 0, 0], [1, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2, 3]])
+    forest = dijkstra_forest(edge_graph(flat), [2, 1])
+    np.testing.assert_array_equal(forest.link[[1, 2]], -1)
+    np.testing.assert_array_equal(forest.owner[[1, 2]], [1, 0])
+
+
+def test_the_first_of_the_largest() -> None:
+    assert first_largest(np.array([0.1 + 0.2 - 1e-15, 0.0, 0.3, 0.1 + 0.2])) == 0
+    assert first_largest(np.array([0.3 - 1e-6, 0.3])) == 1
+    assert first_largest(np.zeros(3)) == 0
 
 
 @pytest.mark.parametrize("radius", [0.2, 0.7, 100.0])

@@ -7,9 +7,10 @@ from itertools import combinations
 import numpy as np
 import pytest
 from fitted import round_sphere
+from small_meshes import double_pyramid
 
 from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.meshes.self_intersections import self_intersecting
+from orbiframe.meshes.self_intersections import intersections, self_intersecting
 
 
 def soup(count: int, size: float, seed: int) -> Polyhedron:
@@ -47,3 +48,22 @@ def test_a_sphere_has_none_and_a_pushed_vertex_makes_some() -> None:
     pushed = sphere.vertices.copy()
     pushed[0] = [-2.6, 0.03, 0.01]
     assert len(self_intersecting(sphere.with_vertices(pushed))) > 4
+
+
+def test_at_a_tip_of_thousands_of_needles_few_pairs_are_tried() -> None:
+    """All boxes of such triangles meet at the tip; without a look at common vertices there were n^2 pairs."""
+    for n in (1000, 30_000):
+        found, tried = intersections(double_pyramid(n))
+        assert len(found) == 0
+        assert tried < 200 * n
+
+
+def test_what_passes_through_a_fan_is_found() -> None:
+    """A needle through both cones, at a place between two of its spokes, meets one triangle of each."""
+    fan = double_pyramid(1000)
+    turn = 0.5 * 2 * np.pi / 1000
+    x, y = 0.5 * np.cos(turn), 0.5 * np.sin(turn)
+    needle = np.array([[x, y, -2.0], [x, y, 2.0], [3.0, y, 2.0]])
+    corners = np.concatenate([fan.vertices[fan.triangles], needle[None]]).reshape(-1, 3)
+    vertices, number = np.unique(corners, axis=0, return_inverse=True)
+    assert list(self_intersecting(Polyhedron.from_faces(vertices, number.reshape(-1, 3)))) == [0, 1000, 2000]

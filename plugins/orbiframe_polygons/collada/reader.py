@@ -44,7 +44,9 @@ def read(path: Path) -> Polyhedron:
     if not parts:
         raise FormatError(f"{path}: the scene holds no triangles or polygons")
     scale = _metres(root)
-    return polyhedron_of(parts if scale == 1 else [part.moved(scale * np.eye(3), np.zeros(3)) for part in parts])
+    if scale != 1:
+        parts = [part.moved(scale * np.eye(3), np.zeros(3)) for part in parts]
+    return polyhedron_of(parts, "metre")
 
 
 def _nodes(root: Element) -> list[Element]:

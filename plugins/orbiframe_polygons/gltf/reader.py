@@ -26,7 +26,7 @@ LATER = (QUANTIZATION, INSTANCING, "FB_ngon_encoding")
 
 
 def read(path: Path) -> Polyhedron:
-    """The triangles of the scene of a glTF 2.0 file, each mesh moved to the places of its nodes.
+    """The triangles of the scene of a glTF 2.0 file, each mesh moved to the places of its nodes, in metres.
 
     Read are lists, strips and fans of triangles, normals, colours of vertices, sparse and quantized accessors and
     morph targets. A mesh that has open edges is closed where points are equal. Points and lines are skipped with a
@@ -42,7 +42,7 @@ def read(path: Path) -> Polyhedron:
     parts = list(_parts(container))
     if not parts:
         raise FormatError(f"{path}: the scene holds no triangles")
-    return polyhedron_of(with_colours_of_all(tuple(parts)))
+    return polyhedron_of(with_colours_of_all(tuple(parts)), "metre")
 
 
 def _require_known(root: Node) -> None:

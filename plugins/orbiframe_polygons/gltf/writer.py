@@ -15,6 +15,7 @@ from orbiframe import FormatError, Polyhedron
 from orbiframe.files import require_triangles
 from orbiframe_polygons.gltf.container import BINARY, CHUNK, JSON, START
 from orbiframe_polygons.loss import tell_loss
+from orbiframe_polygons.units import in_unit
 
 Array = NDArray[Any]
 
@@ -28,9 +29,12 @@ LARGEST = float(np.finfo(np.float32).max)
 def write(path: Path, polyhedron: Polyhedron) -> None:
     """Write triangles, unit normals and colours of vertices, numbers as float32; a .gltf holds its buffer itself.
 
+    Coordinates in millimetres are converted to metres, with a notice; those of no unit are written as they are.
+
     Raises FormatError for faces that are no triangles and for coordinates beyond float32. Colours of faces, and normals
     of length 0, are left out with a warning.
     """
+    polyhedron = in_unit(path, polyhedron, "metre")
     _require_writable(path, polyhedron)
     tell_loss(path, "colours of faces", polyhedron.face_colors is not None)
     buffer = _Buffer()

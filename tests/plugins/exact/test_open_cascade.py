@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import warnings
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -14,7 +16,7 @@ from late import Late, require
 from scipy.spatial import cKDTree
 from spline_checks import quadrature
 
-from orbiframe import Registry
+from orbiframe import Notice, Registry
 from orbiframe.files import gate
 from orbiframe.fitting import pipeline
 from orbiframe.surfaces import patches_of
@@ -99,6 +101,22 @@ def test_plates_open_as_solids_of_the_same_area(number, tmp_path):
     assert opened.is_solid(shape)
     assert opened.area(shape) == pytest.approx(opened.area(shapes.shape_of(patches_of(surface))), rel=1e-9)
     assert opened.volume(shape) > 0
+
+
+@each_format
+def test_metres_are_converted_to_millimetres_and_said(suffix, tmp_path):
+    """The area in square millimetres, as Open CASCADE reads it: a million times that of the numbers in metres."""
+    surface = surface_of("torus", "tensor-bspline", counts=(4, 4))
+    areas = {}
+    for unit in (None, "millimetre", "metre"):
+        coarse = replace(surface.refinement.coarse, unit=unit)
+        measured = replace(surface, refinement=replace(surface.refinement, coarse=coarse))
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            areas[unit] = opened.area(opened.reopened(measured, tmp_path / f"{unit}{suffix}"))
+        assert [w.category for w in said] == ([Notice] if unit == "metre" else [])
+    assert areas[None] == areas["millimetre"]
+    assert areas["metre"] == pytest.approx(1e6 * areas["millimetre"], rel=1e-6)
 
 
 @each_format

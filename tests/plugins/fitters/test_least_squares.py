@@ -144,6 +144,14 @@ def test_too_few_samples_are_an_error_with_the_way_out() -> None:
         LeastSquares(fairing=0).fit(basis, samples(basis, 10))
 
 
+def test_as_many_samples_as_functions_are_interpolated() -> None:
+    basis = space("torus")
+    data = samples(basis, basis.size)
+    assert len(data.weights) == basis.size
+    coefficients = LeastSquares(fairing=0).fit(basis, data)
+    np.testing.assert_allclose(basis.values(data.points, coefficients), data.values, atol=1e-6)
+
+
 def test_functions_that_reach_no_sample_are_an_error() -> None:
     """Enough samples, but all in one place."""
     basis = space("torus", 100)

@@ -14,7 +14,7 @@ from orbiframe_parametrizers.flat import _reshaped
 from orbiframe_parametrizers.harmonic import harmonic
 from orbiframe_parametrizers.regular_faces import _conformal, regular_faces
 from orbiframe_parametrizers.second_order import SecondOrder, turning_angle
-from orbiframe_parametrizers.shape_energy import ShapeEnergy, half_square, reshaped
+from orbiframe_parametrizers.shape_energy import ShapeEnergy, _searched, half_square, reshaped
 from orbiframe_parametrizers.vertex_scaling import scaled
 from reference_meshes import DATASETS, REGISTRY, connected_sum, dataset, geometry, klein_quartic
 
@@ -190,6 +190,18 @@ def test_derivatives_are_those_of_differences(name, area):
     slope, bend = np.einsum("fi,fi->", terms.gradient, along), np.einsum("fi,fij,fj->", along, terms.hessian, along)
     assert (after - before) / (2 * h) == pytest.approx(slope, rel=1e-3, abs=1e-3 * np.sqrt(bend * here))
     assert (after - 2 * here + before) / h**2 == pytest.approx(bend, rel=1e-3)
+
+
+def test_a_step_is_taken_only_where_the_energy_falls_as_much_as_the_slope_says():
+    """A slope a hundred thousand times too steep is never followed, however short the step."""
+    first = reference_triangulations()["torus"]
+    energy = ShapeEnergy(first, EQUILATERAL + np.zeros((len(first.lifts), 3, 2)), 0.0)
+    value = energy.value(first.points)
+    step, decrement = energy.newton_step(first.points)
+    points, less = _searched(energy, first.points, value, step, decrement)
+    assert less < value
+    assert energy.value(points) == less
+    assert _searched(energy, first.points, value, step, 1e5 * decrement) is None
 
 
 @pytest.mark.parametrize("curvature", [-1, 1])

@@ -291,8 +291,9 @@ def test_writing_says_what_is_lost(tmp_path):
         write(tmp_path / "a.glb", made)
     with pytest.raises(FormatError, match=r"face 0 has 4 corners.*triangulate"):
         write(tmp_path / "a.glb", Polyhedron.from_faces(CUBE, QUADS))
-    with pytest.raises(FormatError, match="a coordinate is larger"):
-        write(tmp_path / "a.glb", made.with_vertices(made.vertices * 1e39))
+    for scale in (1e39, -1e39):
+        with pytest.raises(FormatError, match="a coordinate is larger"):
+            write(tmp_path / "a.glb", made.with_vertices(made.vertices * scale))
 
 
 # ---- what is refused ------------------------------------------------------------------------------------------------
