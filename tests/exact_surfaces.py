@@ -8,8 +8,9 @@ from functools import cache
 
 import numpy as np
 
-from orbiframe import Fitter, OrbifoldSurface, Points, Registry
+from orbiframe import Fitter, OrbifoldSurface, Points, Registry, Samples, Triangulation
 from orbiframe.functions.samples import coordinate_samples
+from orbiframe.meshes.sizes import vector_areas
 from orbiframe.orbifolds import FlatLattice
 from orbiframe.testing.reference import reference_surface
 
@@ -22,9 +23,27 @@ def surface_of(name: str, basis: str, **options: object) -> OrbifoldSurface:
     first = reference_surface(name, "ps2")
     made = REGISTRY.load("basis", basis)(first.orbifold, first.triangulation, **{"size": 120, **options})
     fitter: Fitter = REGISTRY.load("fitter", "least-squares")()
-    coefficients = fitter.fit(made, coordinate_samples(first.triangulation))
+    coefficients = fitter.fit(made, samples_for(first.triangulation, made.size))
     return replace(
         first, basis=made, basis_name=basis, coefficients=coefficients, origin=np.array([1.0, -2.0, 0.5]), scale=1.5
+    )
+
+
+def samples_for(triangulation: Triangulation, size: int) -> Samples:
+    """The samples of a map; where there are fewer than functions, with fairness at ten places of every triangle too."""
+    data = coordinate_samples(triangulation)
+    if len(data.weights) >= size:
+        return data
+    count = 10 * triangulation.polyhedron.face_count
+    face, shares = np.repeat(np.arange(count // 10), 10), np.random.default_rng(0).dirichlet([1, 1, 1], size=count)
+    more, none = triangulation.locate(face, shares), np.zeros(count)
+    area = np.repeat(np.linalg.norm(vector_areas(triangulation.polyhedron), axis=1) / 10, 10)
+    return Samples(
+        Points(np.append(data.points.patch, more.patch), np.concatenate([data.points.x, more.x])),
+        np.concatenate([data.values, np.zeros((count, 3))]),
+        np.append(data.weights, none),
+        np.append(data.stretch, np.repeat(triangulation.areas / 10, 10) / np.maximum(area, 1e-300)),
+        np.append(0 * data.weights, area),
     )
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.delaunay.fresh_frames import edge_gluings
 from orbiframe.errors import GeometryError
 from orbiframe.groups.group import Group
 from orbiframe.groups.polygon_group import PolygonGroup
 from orbiframe.orbifolds.orbifold import Orbifold
+from orbiframe.triangulations.edge_frames import edge_gluings
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
@@ -47,7 +47,7 @@ def _fan(orbifold: Orbifold, group: PolygonGroup) -> GeodesicTriangulation:
     )
     twin = np.stack([3 * mate, 3 * np.roll(k, -1) + 2, 3 * np.roll(k, 1) + 1], axis=1).ravel()
     same = np.stack([parallel, np.zeros_like(parallel), np.zeros_like(parallel)], axis=1).ravel()
-    gluing = edge_gluings(geometry.curvature, corners, twin, same)
+    gluing = edge_gluings(geometry, corners, twin, same)
     gluing[::3] = np.where(parallel[:, None, None], geometry.reflection(0.0), geometry.rotation(np.pi))
     return GeodesicTriangulation(orbifold, corners, twin, same, gluing, np.zeros_like(k), flags)
 
@@ -64,7 +64,7 @@ def _octahedron(orbifold: Orbifold) -> GeodesicTriangulation:
     twin, same = _matching(ends, orbifold.orientable)
     centre = orbifold.geometry.carry(orbifold.geometry.project(corners.sum(axis=1)))
     x = orbifold.geometry.act(np.swapaxes(centre, -1, -2)[:, None], corners)
-    gluing = edge_gluings(orbifold.geometry.curvature, x, twin, same)
+    gluing = edge_gluings(orbifold.geometry, x, twin, same)
     return GeodesicTriangulation(orbifold, x, twin, same, gluing, np.zeros(len(x), dtype=np.intp), centre)
 
 

@@ -12,6 +12,10 @@ from .outputs import (
     write_bytes as write_bytes,
     write_text as write_text,
 )
-from .sandbox import confined_read as confined_read, confined_write as confined_write
+from .sandbox import (
+    confined_read as confined_read,
+    confined_tables as confined_tables,
+    confined_write as confined_write,
+)
 from .surface_file import load_surface as load_surface, save_surface as save_surface
 from .triangles_only import require_triangles as require_triangles

@@ -7,8 +7,10 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from orbiframe.errors import FormatError, OrbiframeError, PluginError
 from orbiframe.files.confinement import confine
@@ -36,6 +38,17 @@ def confined_read(target: str, path: Path, *, seconds: float = SECONDS, memory: 
         parcel = folder / "polyhedron.npz"
         _run("read", target, path, parcel, *_limits(path, seconds, memory))
         return _unpacked(parcel)
+
+
+def confined_tables(
+    target: str, path: Path, *, seconds: float = SECONDS, memory: int = MEMORY
+) -> dict[str, NDArray[Any]]:
+    """The named arrays, of numbers or text, that the function `target` makes of a file; see `confined_read`."""
+    with temporary_folder() as folder:
+        parcel = folder / "tables.npz"
+        _run("tables", target, path, parcel, *_limits(path, seconds, memory))
+        with np.load(parcel, allow_pickle=False) as tables:
+            return dict(tables)
 
 
 def confined_write(
@@ -97,10 +110,12 @@ def main(verb: str, target: str, path: str, parcel: str, memory: str) -> int:
     function = getattr(importlib.import_module(module), name)
     _limit_memory(int(memory))
     place, folders = Path(path), [Path(parcel).parent]
-    confine([place], folders if verb == "read" else [*folders, place.parent])
+    confine([place], [*folders, place.parent] if verb == "write" else folders)
     try:
         if verb == "read":
             _pack(Path(parcel), function(Path(path)))
+        elif verb == "tables":
+            np.savez(parcel, **function(Path(path)))
         else:
             function(Path(path), _unpacked(Path(parcel)))
     except OrbiframeError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,10 +11,43 @@ from numpy.typing import NDArray
 from orbiframe.functions.basis import Basis
 from orbiframe.functions.samples import Samples
 
+Floats = NDArray[np.float64]
+
 
 class Fitter(ABC):
     """A way to approximate; built by keyword options from the configuration alone."""
 
     @abstractmethod
-    def fit(self, basis: Basis, samples: Samples) -> NDArray[np.float64]:
+    def fit(self, basis: Basis, samples: Samples) -> Floats:
         """The coefficients (size, d) of the approximations of the d sampled functions; pure and deterministic."""
+
+
+class ValidatedFit(NamedTuple):
+    """A fit and how well it foretells.
+
+    coefficients: (size, d); fairing: how much smoothing was taken; freedom: how many numbers the fit takes from the
+    data, between 1 and the number of functions; left_out: (n, d), what each value is beyond the fit of all others.
+    """
+
+    coefficients: Floats
+    fairing: float
+    freedom: float
+    left_out: Floats
+
+
+class ValidatedFitter(Fitter):
+    """A fitter that leaves out each of its data in turn, to tell how well its fits foretell.
+
+    Its option fairing, None by default, says how much is smoothed; without it that is found from the data.
+    """
+
+    def __init__(self, *, fairing: float | None = None) -> None:
+        self.fairing = fairing
+
+    def fit(self, basis: Basis, samples: Samples) -> Floats:
+        """The coefficients (size, d)."""
+        return self.fit_validated(basis, samples).coefficients
+
+    @abstractmethod
+    def fit_validated(self, basis: Basis, samples: Samples) -> ValidatedFit:
+        """The fit with its errors by cross-validation, those of samples without weight being nan."""

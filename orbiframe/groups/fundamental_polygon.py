@@ -37,6 +37,7 @@ class FundamentalPolygon:
     word: Word
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "vertices", _coordinates(self.vertices))
         if self.vertices.shape != (len(self.word), 3):
             raise GeometryError(
                 f"{len(self.vertices)} vertices for the {len(self.word)} letters of '{self.word}'; side p runs from "
@@ -176,6 +177,17 @@ class FundamentalPolygon:
         for side in relation:
             product = product @ self.pairings[side]
         return product
+
+
+def _coordinates(vertices: ArrayLike) -> Floats:
+    """Vertices as an array; any list of numbers will do."""
+    try:
+        found = np.asarray(vertices, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise GeometryError(f"the vertices are no numbers: {error}; give an array (n, 3) of points of X") from error
+    if found.ndim != 2 or not np.isfinite(found).all():
+        raise GeometryError(f"the vertices have the shape {found.shape}; give finite points of X, as an array (n, 3)")
+    return found
 
 
 def regular_polygon(geometry: Geometry, word: Word) -> FundamentalPolygon:

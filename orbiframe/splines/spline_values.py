@@ -6,7 +6,7 @@ import numpy as np
 
 from orbiframe.compiled.decorator import compiled
 from orbiframe.splines.bernstein_kernels import fan_triangle, micro_heights, micro_triangle
-from orbiframe.triangulations.point_location import square_of, walk
+from orbiframe.triangulations.point_location import settled, square_of, walk
 
 
 @compiled(arrays=False, may_divide_by_zero=True)
@@ -34,7 +34,7 @@ def _locate(begin, end, points, grid, steps, split, work):  # type: ignore[no-un
     """The micro triangles of a block of points, with the barycentric coordinates in them."""
     patch, x = points
     grid_face, g, half_width = grid
-    inverse, twin, across = steps
+    inverse, twin, across, curvature = steps
     micro_inverse, fan, micro_count = split
     micro, coordinates = work[0], work[1]
     sides, squares = grid_face.shape[1], grid_face.shape[2]
@@ -49,8 +49,8 @@ def _locate(begin, end, points, grid, steps, split, work):  # type: ignore[no-un
             y = g[p, s, i, j, row, 0] * x0 + g[p, s, i, j, row, 1] * x1 + g[p, s, i, j, row, 2] * x2
             coordinates[k, row] = y
     for k in range(end - begin):
-        y0, y1, y2 = coordinates[k, 0], coordinates[k, 1], coordinates[k, 2]
-        f, y0, y1, y2, a, b, c = walk(micro[k], y0, y1, y2, inverse, twin, across)
+        y0, y1, y2 = settled(curvature, coordinates[k, 0], coordinates[k, 1], coordinates[k, 2])
+        f, y0, y1, y2, a, b, c = walk(micro[k], y0, y1, y2, inverse, twin, across, curvature)
         if f < 0:
             return begin + k
         if fan.shape[1] == 0:

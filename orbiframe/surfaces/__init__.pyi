@@ -6,9 +6,18 @@ from .curved_triangles import (
     joined_meshes as joined_meshes,
     node_exponents as node_exponents,
 )
+from .equations import heat as heat, poisson as poisson
 from .exact_patches import patches_of as patches_of
+from .field import Field as Field, fit_field as fit_field
 from .geodesic_faces import GeodesicFaces as GeodesicFaces, input_faces as input_faces
+from .gram_schmidt import Orthonormal as Orthonormal, orthonormal as orthonormal
+from .nearest import nearest_points as nearest_points
 from .periodic_patch import PeriodicPatch as PeriodicPatch
+from .principal import (
+    PrincipalCurvature as PrincipalCurvature,
+    principal_curvature as principal_curvature,
+)
 from .quadrilateral_patches import QuadrilateralPatches as QuadrilateralPatches
-from .surface import Curvature as Curvature, OrbifoldSurface as OrbifoldSurface
+from .surface import Curvature as Curvature, OrbifoldSurface as OrbifoldSurface, Tessellation as Tessellation
+from .surface_forms import SurfaceForms as SurfaceForms
 from .triangle_patches import TrianglePatches as TrianglePatches

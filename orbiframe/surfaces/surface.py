@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from orbiframe.errors import FitError
 from orbiframe.functions.basis import Basis, DifferentiableBasis
@@ -18,6 +18,10 @@ from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.planes.quadrature import triangle_points
 from orbiframe.triangulations.triangulation import Triangulation
+
+if TYPE_CHECKING:
+    from orbiframe.functions.fitter import Fitter
+    from orbiframe.surfaces.field import Field
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -46,6 +50,13 @@ class Curvature(NamedTuple):
     mean: Floats
     normal: Floats
     element: Floats
+
+
+class Tessellation(NamedTuple):
+    """A triangle mesh on a surface, and the points of X/H under its vertices."""
+
+    mesh: Polyhedron
+    points: Points
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,6 +125,17 @@ class OrbifoldSurface:
             total += float(np.abs(weights).ravel() @ (bent.gaussian * bent.element))
         return total
 
+    def fit_field(
+        self, points: Points | ArrayLike, values: ArrayLike, *, fitter: Fitter | None = None, basis: Basis | None = None
+    ) -> Field:
+        """The smooth functions on this surface that have about these values (n,) or (n, q) at n points.
+
+        points: of X/H, or (n, 3) in space; see `orbiframe.surfaces.fit_field`.
+        """
+        from orbiframe.surfaces.field import fit_field
+
+        return fit_field(self, points, values, fitter=fitter, basis=basis)
+
     def tessellate(self, density: int = 1, *, bisected: bool = False) -> Polyhedron:
         """A triangle mesh on the surface with normals: every triangle of the input in density^2 triangles.
 
@@ -122,16 +144,21 @@ class OrbifoldSurface:
         glued as those of the input are. Where a file could not tell the edges by their ends, triangles are halved
         first, see `refined_by_ends`. Normals point to the side from which the faces run counterclockwise.
         """
+        return self.tessellation(density, bisected=bisected).mesh
+
+    def tessellation(self, density: int = 1, *, bisected: bool = False) -> Tessellation:
+        """The same mesh with the points of X/H that its vertices lie over."""
         mesh = refined_by_ends(self.triangulation.polyhedron if bisected else self.refinement.coarse, density)
         face, barycentric = mesh.face, mesh.barycentric
         if not bisected:
             face, barycentric = self.refinement.locate(face, barycentric)
         points = self.triangulation.locate(face, barycentric)
         if not isinstance(self.basis, DifferentiableBasis):
-            return self._in_unit(mesh.polyhedron.with_vertices(self.evaluate(points)))
+            return Tessellation(self._in_unit(mesh.polyhedron.with_vertices(self.evaluate(points))), points)
         d = self._derivatives(points, 1)
         normals = _unit(np.cross(d[1], d[2])) * self.triangulation.face_signs[face, None]
-        return self._in_unit(mesh.polyhedron.with_vertices(self.origin + self.scale * d[0], normals))
+        placed = mesh.polyhedron.with_vertices(self.origin + self.scale * d[0], normals)
+        return Tessellation(self._in_unit(placed), points)
 
     @property
     def unit(self) -> str | None:

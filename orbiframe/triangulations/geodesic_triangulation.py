@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from orbiframe.errors import MapError
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.planes.geometry import Geometry
+from orbiframe.triangulations.edge_frames import about_centres, edge_gluings
 from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
@@ -191,7 +192,8 @@ class GeodesicTriangulation:
     def refined(self) -> GeodesicTriangulation:
         """Every triangle in four, through the midpoints of its edges: triangle 4 f + c at corner c, 4 f + 3 inside.
 
-        The midpoint of edge c, from corner c to c + 1, is corner c + 1 of child c and corner c of the inner child.
+        The midpoint of edge c, from corner c to c + 1, is corner c + 1 of child c and corner c of the inner child. Each
+        child has a frame of its own at its centre, so that refined triangles are exact however large these are.
         """
         x, geometry = self.corners, self.geometry
         middle = geometry.project(x + np.roll(x, -1, axis=1))
@@ -200,16 +202,16 @@ class GeodesicTriangulation:
         for c in range(3):
             child[:, c, c], child[:, c, (c + 1) % 3], child[:, c, (c + 2) % 3] = x[:, c], middle[:, c], before[:, c]
         child[:, 3] = middle
-        twin, same, gluing = self._refined_gluing()
-        patch, placement = np.repeat(self.patch, 4), np.repeat(self.placement, 4, axis=0)
-        return GeodesicTriangulation(self.orbifold, child.reshape(-1, 3, 3), twin, same, gluing, patch, placement)
+        twin, same = self._refined_twins()
+        corners, placement = about_centres(geometry, child.reshape(-1, 3, 3), np.repeat(self.placement, 4, axis=0))
+        gluing = edge_gluings(geometry, corners, twin, same)
+        return GeodesicTriangulation(self.orbifold, corners, twin, same, gluing, np.repeat(self.patch, 4), placement)
 
-    def _refined_gluing(self) -> tuple[Ints, Bools, Floats]:
-        """Twins, side flags and gluings of the children: outer halves inherit, inner edges lie in one frame."""
+    def _refined_twins(self) -> tuple[Ints, Bools]:
+        """Twins and side flags of the children: outer halves inherit."""
         count = self.face_count
         twin = np.empty((count, 4, 3), dtype=np.intp)
         same = np.zeros((count, 4, 3), dtype=np.bool_)
-        gluing = np.tile(np.eye(3), (count, 4, 3, 1, 1))
         base = 12 * np.arange(count)
         for c in range(3):
             after = (c + 1) % 3
@@ -220,8 +222,8 @@ class GeodesicTriangulation:
             for child in (c, after):
                 start_half = child == c
                 twin[:, child, c] = _half(self.twin[edge], self.same[edge] == start_half)
-                same[:, child, c], gluing[:, child, c] = self.same[edge], self.gluing[edge]
-        return twin.ravel(), same.ravel(), gluing.reshape(-1, 3, 3)
+                same[:, child, c] = self.same[edge]
+        return twin.ravel(), same.ravel()
 
 
 def _following(halfedge: Ints) -> Ints:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
 
 from orbiframe.compiled.decorator import compiled
 from orbiframe.compiled.matrices import copy
@@ -24,6 +25,10 @@ _MOST_STEPS = 1_000_000
 _MANY = 20_000  # from so many points on it pays to sort them by squares
 # A point this far beyond an edge, in barycentric coordinates, still counts as inside: no point goes back and forth.
 _ON_EDGE = 1e-12
+# Isometries that are as near as this, of their largest entry, are one but for rounding: no two of a group are.
+_SAME_LIFT = 1e-3
+# Numbers in a patch of this radius are so large that products of many isometries lose digits.
+_LARGE = 2.0
 
 
 class Location(NamedTuple):
@@ -64,11 +69,12 @@ class Locator:
         return Location(order, face, columns)
 
     @cached_property
-    def steps(self) -> tuple[Floats, Ints, Floats]:
-        """What a walk needs: inverses of the corner matrices (F, 3, 3), twins (3 F,), the isometry across each edge."""
+    def steps(self) -> tuple[Floats, Ints, Floats, int]:
+        """What a walk needs: inverses of corner matrices (F, 3, 3), twins (3 F,), isometries across edges, and K."""
+        geometry = self.domain.geometry
         inverse = np.linalg.inv(np.swapaxes(self.domain.corners, 1, 2))
         across = self.domain.gluing[self.domain.twin]
-        return np.ascontiguousarray(inverse), self.domain.twin, np.ascontiguousarray(across)
+        return np.ascontiguousarray(inverse), self.domain.twin, np.ascontiguousarray(across), geometry.curvature
 
     @cached_property
     def grid(self) -> Grid:
@@ -85,8 +91,26 @@ class Locator:
             np.empty((atlas.patch_count, sides, squares, squares, 3, 3)),
             half_width,
         )
-        _fill_grid(geometry.curvature, face, isometry, self.steps, grid.face, grid.isometry, half_width)
+        _fill_grid(face, isometry, self.steps, grid.face, grid.isometry, half_width)
+        self._replace_by_placements(grid)
         return grid
+
+    def _replace_by_placements(self, grid: Grid) -> None:
+        """Where a walk has come to the lift of a triangle that lies in the patch, its placement is the way, exactly.
+
+        In large patches the other squares are reached again, from the nearest of those.
+        """
+        exact = self.domain.geometry.inverse(self.domain.placement)[grid.face]
+        here = np.arange(len(grid.face))[:, None, None, None] == self.domain.patch[grid.face]
+        size = np.abs(exact).max(axis=(-2, -1))
+        here &= np.abs(grid.isometry - exact).max(axis=(-2, -1)) < _SAME_LIFT * size
+        grid.isometry[here] = exact[here]
+        for p in np.flatnonzero(self.domain.orbifold.atlas.radius > _LARGE if grid.face.shape[1] == 1 else []):
+            if here[p, 0].any() and not here[p, 0].all():
+                source = distance_transform_edt(~here[p, 0], return_distances=False, return_indices=True)
+                _refill(
+                    np.asarray(source), here[p, 0], self.steps, grid.face[p, 0], grid.isometry[p, 0], grid.half_width[p]
+                )
 
     def _seeds(self) -> tuple[Ints, Floats]:
         """A triangle for every patch and the isometry from the frame of the patch to the frame of the triangle."""
@@ -157,9 +181,74 @@ def _carried(g, x0, x1, x2):  # type: ignore[no-untyped-def]
     )
 
 
+@compiled(may_divide_by_zero=True, inline=True)
+def settled(curvature, x0, x1, x2):  # type: ignore[no-untyped-def]
+    """A point that has drifted off X by rounding, put back: as `Geometry.settle` does it."""
+    if curvature < 0:
+        x0 = np.sqrt(1 + x1 * x1 + x2 * x2)
+    elif curvature > 0:
+        scale = 1 / np.sqrt(x0 * x0 + x1 * x1 + x2 * x2)
+        x0, x1, x2 = x0 * scale, x1 * scale, x2 * scale
+    return x0, x1, x2
+
+
+@compiled(may_divide_by_zero=True)
+def _settle_frame(curvature, first, columns):  # type: ignore[no-untyped-def]
+    """Make columns `first` to `first` + 2 an orthonormal frame again, a point of X and two tangent vectors there.
+
+    The turn from the frame that the translation from the origin carries to the point, found from the two vectors, is
+    made a turn again: so errors are those of the point and of one angle, and do not grow from step to step.
+    """
+    p0, p1, p2 = settled(curvature, columns[0, first], columns[1, first], columns[2, first])
+    columns[0, first], columns[1, first], columns[2, first] = p0, p1, p2
+    if curvature > 0 and p0 < 0:
+        # The translation from the origin is uncertain near its antipode; there the frame is turned over.
+        _settle_by_products(columns, first)
+        return
+    # The columns of the translation: t_i = e_i - K p_i e_0 - K p_i (p - e_0) ... / (1 + p_0), in closed form.
+    share = curvature / (1 + p0)
+    a0, a1, a2 = -curvature * p1, 1 - share * p1 * p1, -share * p1 * p2
+    b0, b1, b2 = -curvature * p2, -share * p1 * p2, 1 - share * p2 * p2
+    u0, u1, u2 = columns[0, first + 1], columns[1, first + 1], columns[2, first + 1]
+    v0, v1, v2 = columns[0, first + 2], columns[1, first + 2], columns[2, first + 2]
+    k = curvature
+    cosine = k * u0 * a0 + u1 * a1 + u2 * a2
+    sine = k * u0 * b0 + u1 * b1 + u2 * b2
+    side = cosine * (k * v0 * b0 + v1 * b1 + v2 * b2) - sine * (k * v0 * a0 + v1 * a1 + v2 * a2)
+    length = np.sqrt(cosine * cosine + sine * sine)
+    cosine, sine = cosine / length, sine / length
+    turn = 1.0 if side > 0 else -1.0
+    columns[0, first + 1] = cosine * a0 + sine * b0
+    columns[1, first + 1] = cosine * a1 + sine * b1
+    columns[2, first + 1] = cosine * a2 + sine * b2
+    columns[0, first + 2] = turn * (cosine * b0 - sine * a0)
+    columns[1, first + 2] = turn * (cosine * b1 - sine * a1)
+    columns[2, first + 2] = turn * (cosine * b2 - sine * a2)
+
+
+@compiled(may_divide_by_zero=True)
+def _settle_by_products(columns, first):  # type: ignore[no-untyped-def]
+    """Gram and Schmidt's orthonormal vectors on the sphere, where no number is large."""
+    for later in (1, 2):
+        for before in range(later):
+            product = 0.0
+            for row in range(3):
+                product += columns[row, first + before] * columns[row, first + later]
+            for row in range(3):
+                columns[row, first + later] -= product * columns[row, first + before]
+        length = 0.0
+        for row in range(3):
+            length += columns[row, first + later] ** 2
+        for row in range(3):
+            columns[row, first + later] /= np.sqrt(length)
+
+
 @compiled
-def _walk_one(face, columns, inverse, twin, across):  # type: ignore[no-untyped-def]
-    """Move columns (3, m), the first a point, from triangle to triangle until it is inside; the last one, or -1."""
+def _walk_one(face, columns, inverse, twin, across, curvature):  # type: ignore[no-untyped-def]
+    """Move columns (3, m), the first a point, from triangle to triangle until it is inside; the last one, or -1.
+
+    The point is settled at every step: else it drifts off X the faster the farther it is from where it began.
+    """
     for _ in range(_MOST_STEPS):
         _, _, _, way = _way_out(inverse, face, columns[0, 0], columns[1, 0], columns[2, 0])
         if way < 0:
@@ -169,6 +258,7 @@ def _walk_one(face, columns, inverse, twin, across):  # type: ignore[no-untyped-
             columns[0, k], columns[1, k], columns[2, k] = _carried(
                 across[edge], columns[0, k], columns[1, k], columns[2, k]
             )
+        columns[0, 0], columns[1, 0], columns[2, 0] = settled(curvature, columns[0, 0], columns[1, 0], columns[2, 0])
         face = twin[edge] // 3
     return -1
 
@@ -183,7 +273,7 @@ def square_of(x0, x1, x2, half_width, squares):  # type: ignore[no-untyped-def]
 
 
 @compiled(may_divide_by_zero=True, inline=True)
-def walk(face, x0, x1, x2, inverse, twin, across):  # type: ignore[no-untyped-def]
+def walk(face, x0, x1, x2, inverse, twin, across, curvature):  # type: ignore[no-untyped-def]
     """From triangle to triangle until the point is inside: face, the point in its frame, barycentric coordinates.
 
     The face is -1 where no triangle holds the point.
@@ -195,6 +285,7 @@ def walk(face, x0, x1, x2, inverse, twin, across):  # type: ignore[no-untyped-de
         if way < 0:
             break
         x0, x1, x2 = _carried(across[3 * face + way], x0, x1, x2)
+        x0, x1, x2 = settled(curvature, x0, x1, x2)
         face = twin[3 * face + way] // 3
     return -1, x0, x1, x2, 0.0, 0.0, 0.0
 
@@ -224,7 +315,7 @@ def _order_by_square(patch, x, half_width, shape, order):  # type: ignore[no-unt
 def _walk_all(patch, face, moved, steps, grid):  # type: ignore[no-untyped-def]
     """Locate every point; returns the first that has no triangle, or -1."""
     grid_face, grid_isometry, half_width = grid
-    inverse, twin, across = steps
+    inverse, twin, across, curvature = steps
     squares, width = grid_face.shape[2], moved.shape[2]
     for n in range(len(patch)):
         p, columns = patch[n], moved[n]
@@ -237,9 +328,12 @@ def _walk_all(patch, face, moved, steps, grid):  # type: ignore[no-untyped-def]
             a, b, c = columns[0, k], columns[1, k], columns[2, k]
             for row in range(3):
                 columns[row, k] = g[row, 0] * a + g[row, 1] * b + g[row, 2] * c
-        face[n] = _walk_one(grid_face[p, side, i, j], columns, inverse, twin, across)
+        columns[0, 0], columns[1, 0], columns[2, 0] = settled(curvature, columns[0, 0], columns[1, 0], columns[2, 0])
+        face[n] = _walk_one(grid_face[p, side, i, j], columns, inverse, twin, across, curvature)
         if face[n] < 0:
             return n
+        if width == 3:
+            _settle_frame(curvature, 0, columns)
     return -1
 
 
@@ -258,9 +352,12 @@ def _centre(curvature, i, j, squares, half_width):  # type: ignore[no-untyped-de
 
 
 @compiled
-def _fill_grid(curvature, seed, isometry, steps, grid_face, grid_isometry, half_width):  # type: ignore[no-untyped-def]
-    """The triangle at the centre of every square: every row starts from the row before, so that no walk is long."""
-    inverse, twin, across = steps
+def _fill_grid(seed, isometry, steps, grid_face, grid_isometry, half_width):  # type: ignore[no-untyped-def]
+    """The triangle at the centre of every square: every row starts from the row before, so that no walk is long.
+
+    The isometries are products along the rows, and made isometries again at every square.
+    """
+    inverse, twin, across, curvature = steps
     squares = grid_face.shape[2]
     columns, g, row_isometry = np.empty((3, 4)), np.empty((3, 3)), np.empty((3, 3))
     for p in range(len(seed)):
@@ -276,7 +373,11 @@ def _fill_grid(curvature, seed, isometry, steps, grid_face, grid_isometry, half_
                     for row in range(3):
                         columns[row, 0] = g[row, 0] * x0 + g[row, 1] * x1 + g[row, 2] * x2
                         columns[row, 1], columns[row, 2], columns[row, 3] = g[row, 0], g[row, 1], g[row, 2]
-                    face = _walk_one(face, columns, inverse, twin, across)
+                    columns[0, 0], columns[1, 0], columns[2, 0] = settled(
+                        curvature, columns[0, 0], columns[1, 0], columns[2, 0]
+                    )
+                    face = _walk_one(face, columns, inverse, twin, across, curvature)
+                    _settle_frame(curvature, 1, columns)
                     for row in range(3):
                         g[row, 0], g[row, 1], g[row, 2] = columns[row, 1], columns[row, 2], columns[row, 3]
                     grid_face[p, side, i, j] = face
@@ -284,3 +385,28 @@ def _fill_grid(curvature, seed, isometry, steps, grid_face, grid_isometry, half_
                     if j == 0:
                         row_face = face
                         copy(g, row_isometry)
+
+
+@compiled
+def _refill(source, known, steps, grid_face, grid_isometry, half_width):  # type: ignore[no-untyped-def]
+    """Reach the squares that are not known from others, whose rows and columns `source` holds, (2, n, n)."""
+    inverse, twin, across, curvature = steps
+    squares = len(grid_face)
+    columns = np.empty((3, 4))
+    for i in range(squares):
+        for j in range(squares):
+            if known[i, j]:
+                continue
+            g, face = grid_isometry[source[0, i, j], source[1, i, j]], grid_face[source[0, i, j], source[1, i, j]]
+            x0, x1, x2 = _centre(curvature, i, j, squares, half_width)
+            for row in range(3):
+                columns[row, 0] = g[row, 0] * x0 + g[row, 1] * x1 + g[row, 2] * x2
+                columns[row, 1], columns[row, 2], columns[row, 3] = g[row, 0], g[row, 1], g[row, 2]
+            columns[0, 0], columns[1, 0], columns[2, 0] = settled(
+                curvature, columns[0, 0], columns[1, 0], columns[2, 0]
+            )
+            grid_face[i, j] = _walk_one(face, columns, inverse, twin, across, curvature)
+            _settle_frame(curvature, 1, columns)
+            for row in range(3):
+                for k in range(3):
+                    grid_isometry[i, j, row, k] = columns[row, k + 1]

@@ -90,10 +90,21 @@ def require_not_negative(fitter: str, **options: float | None) -> None:
 
 
 def require_rows(basis: Basis, samples: Samples, fairing: float | None) -> None:
-    """Raises FitError where there are too few samples, even if all of them are independent."""
+    """Raises FitError where there are too few samples, even if all of them are independent.
+
+    Fairing acts at the samples alone, so that it joins no data between them: it needs samples all over the surface,
+    with or without a weight, and at least as many as there are functions.
+    """
     count = int((samples.weights > 0).sum())
     if not count:
         raise FitError("all samples have weight zero; at least one must count")
+    places = int(((samples.weights > 0) | (samples.shares > 0)).sum())
+    if fairing != 0 and places < basis.size:
+        raise FitError(
+            f"{places} samples leave at least {basis.size - places} of {basis.size} functions undetermined, for "
+            "fairing acts at the samples only; add samples of weight 0 all over the surface, as surface.fit_field "
+            "does, or lower the option size"
+        )
     if fairing == 0 and count < basis.size:
         raise FitError(
             f"{count} samples do not determine {basis.size} functions without fairing; raise the option fairing, lower "

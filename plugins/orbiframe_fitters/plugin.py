@@ -7,7 +7,7 @@ from orbiframe.plugin import Component, hookimpl
 
 @hookimpl
 def orbiframe_components() -> list[Component]:
-    """Weighted least squares."""
+    """Least squares, sliding and smoothing."""
     return [
         Component(
             "fitter",
@@ -20,5 +20,11 @@ def orbiframe_components() -> list[Component]:
             "sliding",
             "orbiframe_fitters.sliding:Sliding",
             "least distance along the normals: the samples slide along the surface",
+        ),
+        Component(
+            "fitter",
+            "smoothing",
+            "orbiframe_fitters.smoothing:Smoothing",
+            "splines with a penalty all over the surface, smoothed as cross-validation says",
         ),
     ]

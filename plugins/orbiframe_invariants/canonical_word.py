@@ -39,7 +39,7 @@ def canonical_form(word: Word) -> CanonicalWord:
 
     Letters grow with the number of cuts, to some hundred for a word of twenty.
     """
-    tree = _tree(word)
+    tree = tree_letters(word)
     cuts = _Cuts([letter for letter in word.letters if abs(letter) not in tree], tree)
     cuts.find_crosscaps()
     cuts.find_handles()
@@ -52,7 +52,7 @@ def substituted(letters: Iterable[int], change: Change) -> Letters:
     return reduced_letters(k for a in letters for k in (change[a] if a > 0 else inverse_letters(change[-a])))
 
 
-def _tree(word: Word) -> set[int]:
+def tree_letters(word: Word) -> set[int]:
     """Letters whose sides join all vertices without a circle."""
     vertex = {corner: number for number, cycle in enumerate(word.vertex_cycles) for corner in cycle}
     tree = set[int]()

@@ -9,16 +9,20 @@ from typing import TYPE_CHECKING, Any
 
 from orbiframe import Registry, UsageError
 from orbiframe.files import require_picture
-from orbiframe_invariants.symbol_description import describe_symbol, is_symbol, symbol_group, symbol_rows
+from orbiframe_invariants.group_rows import group_lines
+from orbiframe_invariants.polygon_file import SUFFIX, polygon_of_file
+from orbiframe_invariants.symbol_description import describe_symbol, is_symbol, symbol_group
 
 if TYPE_CHECKING:
     from orbiframe import Group, Word
+    from orbiframe.groups import PolygonGroup
+    from orbiframe_invariants.laplace_spectrum import Eigenvalue
 
 # The shape of a surface of each sign of the Euler characteristic that is meant by "regular".
 _REGULAR = {1: "finite", 0: "lattice", -1: "regular-polygon"}
 _WORD_HELP = (
     "how the sides of a polygon are glued, such as abABcdCD, capitals being inverses; or bolza or klein-quartic; or "
-    "Conway's symbol of an orbifold, such as *237, 4*2 or xx"
+    "Conway's symbol of an orbifold, such as *237, 4*2 or xx; or a .toml file with a word and the vertices of a polygon"
 )
 PICTURE = "group"
 
@@ -31,6 +35,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--prove", action="store_true", help="prove the relations of the regular polygon exactly, without rounding")
     add("--systole", action="store_true", help="the shortest closed geodesic, and how many there are")
     add("--spectrum", metavar="N", type=int, help="the N smallest eigenvalues of the Laplacian, with multiplicities")
+    add("--matrices", action="store_true", help="the matrices of the side pairings, and of the loops along the sides")
     add("--draw", metavar="FILE", type=Path, help="a picture of the polygon and its tiles, .svg, .png or .pdf")
     add("--model", metavar="NAME", help="of the picture: projective, conformal (the default), hyperboloid or sphere")
     shown = parser.add_mutually_exclusive_group().add_argument
@@ -48,7 +53,10 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     if args.spectrum is not None and args.spectrum < 1:
         raise UsageError(f"--spectrum {args.spectrum}: ask for at least 1 eigenvalue")
     _require_picture(args, registry)
-    if is_symbol(args.word):
+    if Path(args.word).suffix == SUFFIX:
+        own = _own_polygon(args, registry)
+        found = _described(own.word) | _computed(args, own, registry)
+    elif is_symbol(args.word):
         orbifold = symbol_group(args, registry)
         found = describe_symbol(orbifold, args.word) | _computed(args, orbifold, registry)
     else:
@@ -56,9 +64,9 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
         found = _described(word)
         if args.prove:
             found["proof"] = _proof(word, args.polygon)
-        if args.systole or args.spectrum or args.draw:
+        if args.systole or args.spectrum or args.draw or args.matrices:
             found.update(_computed(args, _group(word, args.polygon, registry), registry))
-    print(json.dumps(found) if args.json else "\n".join(_lines(found)))
+    print(json.dumps(found) if args.json else "\n".join(group_lines(found)))
     return 0
 
 
@@ -91,9 +99,19 @@ def _group(word: Word, polygon: str, registry: Registry) -> Group:
     return group
 
 
+def _own_polygon(args: argparse.Namespace, registry: Registry) -> PolygonGroup:
+    """The group of a file, which has no named polygon and no regular one."""
+    if args.prove or args.polygon != "regular":
+        raise UsageError(
+            f"--prove and --polygon are for words, and {args.word} has a polygon of its own; leave them out"
+        )
+    return polygon_of_file(Path(args.word), registry)
+
+
 def _described(word: Word) -> dict[str, Any]:
     """What a word says without numbers."""
     from orbiframe.words import Presentation, text_of
+    from orbiframe_invariants.polygon_loops import loops_in_pairings
 
     deficit = 2 - word.euler_characteristic
     one_vertex = len(word.vertex_cycles) == 1
@@ -108,6 +126,7 @@ def _described(word: Word) -> dict[str, Any]:
         "vertices": len(word.vertex_cycles),
         "relations": ["".join(map(text_of, relation)) for relation in word.letter_relations],
         "homology": Presentation.of(word if one_vertex else word.standard).homology_text,
+        "loops": {text_of(k): "".join(map(text_of, loop)) for k, loop in sorted(loops_in_pairings(word).items())},
     }
     return found | ({} if word == word.standard else {"standard": _reduced(word)})
 
@@ -133,18 +152,30 @@ def _computed(args: argparse.Namespace, group: Group, registry: Registry) -> dic
 
         shortest = systole(group)
         found["systole"] = {"length": shortest.length, "multiplicity": shortest.multiplicity}
-    if args.spectrum:
+    if args.matrices:
+        from orbiframe_invariants.generator_matrices import generator_matrices
+
+        found["matrices"] = generator_matrices(group)
+    if args.spectrum and (elements := getattr(group, "elements", None)) is not None:
+        from orbiframe_invariants.spherical_spectrum import spherical_spectrum
+
+        found["spectrum"] = _listed(spherical_spectrum(elements, args.spectrum))
+    elif args.spectrum:
         from orbiframe.delaunay import polygon_triangulation
         from orbiframe_invariants.laplace_spectrum import laplace_spectrum
 
         values = laplace_spectrum(polygon_triangulation(group), _polynomials(registry), args.spectrum)
-        found["spectrum"] = [{"value": e.value, "multiplicity": e.multiplicity, "error": e.error} for e in values]
+        found["spectrum"] = _listed(values)
     if args.draw:
         found["picture"] = str(args.draw)
         if args.function is not None:
             found["function"] = {"number": args.function}
         _draw(args, group, registry, found.get("function", {}))
     return found
+
+
+def _listed(values: list[Eigenvalue]) -> list[dict[str, Any]]:
+    return [{"value": e.value, "multiplicity": e.multiplicity, "error": e.error} for e in values]
 
 
 def _draw(args: argparse.Namespace, group: Group, registry: Registry, about: dict[str, Any]) -> None:
@@ -167,45 +198,3 @@ def _polynomials(registry: Registry) -> Any:
     """The family of continuous piecewise polynomials of even degree."""
     bernstein = registry.load("basis", "bernstein")
     return lambda domain, degree: bernstein(domain.orbifold, domain, degree=degree)
-
-
-def _lines(found: dict[str, Any]) -> list[str]:
-    """The same in words."""
-    rows = symbol_rows(found) if "symbol" in found else _word_rows(found)
-    return [f"{name:<10}{text}" for name, text in rows + _computed_rows(found)]
-
-
-def _word_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
-    surface = found["surface"]
-    rows = [
-        ("word", found["word"]),
-        ("surface", f"{surface['name']}, Euler characteristic {surface['euler_characteristic']}"),
-        ("relations", ", ".join(f"{relation} = 1" for relation in found["relations"])),
-        ("homology", found["homology"]),
-    ]
-    if proof := found.get("proof"):
-        rows.append(("proof", f"exact, in {proof['ring']}"))
-    if standard := found.get("standard"):
-        rows += [("standard", standard["word"]), ("", f"with {_equations(standard['letters'])}")]
-        rows += [("", f"and {_equations(standard['given'])}")]
-    return rows
-
-
-def _computed_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
-    rows = []
-    if shortest := found.get("systole"):
-        rows.append(("systole", f"{shortest['length']:.12g}, {shortest['multiplicity']} closed geodesics"))
-    rows += [
-        ("spectrum" if k == 0 else "", f"{e['value']:.12g} ({e['multiplicity']})")
-        for k, e in enumerate(found.get("spectrum", []))
-    ]
-    if "function" in found:
-        rows.append(("function", f"{found['function']['number']}, eigenvalue {found['function']['eigenvalue']:.9g}"))
-    if "picture" in found:
-        rows.append(("picture", found["picture"]))
-    return rows
-
-
-def _equations(change: dict[str, str]) -> str:
-    """Letters and their words, such as "a = bC, b = c"."""
-    return ", ".join(f"{letter} = {text or '1'}" for letter, text in change.items())

@@ -68,7 +68,7 @@ def _require_supported(args: argparse.Namespace, signature: ConwaySymbol) -> Non
     """Raise UsageError for what only gluing words, or only infinite groups, have."""
     if args.prove:
         raise UsageError(f"--prove is for gluing words, such as abABcdCD, and '{signature}' is a symbol; leave it out")
-    for name in ("spectrum", "systole", "function"):
+    for name in ("systole", "function"):
         if signature.order and getattr(args, name):
             raise UsageError(f"--{name} is for infinite groups; '{signature}' has {signature.order} elements")
 

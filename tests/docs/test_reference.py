@@ -39,7 +39,9 @@ def column(page: Path, heading: str) -> list[str]:
     return [unquoted(row[0]) for row in table_rows(section(page, heading))]
 
 
-@pytest.mark.parametrize("command", ["fit", "info", "convert", "group", "draw", "plugins", "warm-up"])
+@pytest.mark.parametrize(
+    "command", ["fit", "info", "convert", "group", "draw", "curvature", "field", "plugins", "warm-up"]
+)
 def test_every_option_of_a_command_is_in_its_table(command, registry):
     parser = argparse.ArgumentParser()
     registry.load("command", command)(parser)

@@ -204,3 +204,10 @@ def test_samples_name_the_first_bad_number(broken: str) -> None:
     parts[broken] = parts[broken][:4]
     with pytest.raises(FitError, match="shapes"):
         Samples(data.points, **parts)
+
+
+def test_fewer_samples_than_functions_are_an_error_that_names_what_is_missing():
+    """Twenty values on forty functions were joined wildly: fairing at the samples says nothing of what is between."""
+    basis = space("torus")
+    with pytest.raises(FitError, match=f"20 samples leave at least {basis.size - 20} of {basis.size} functions"):
+        LeastSquares().fit(basis, samples(basis, 20))

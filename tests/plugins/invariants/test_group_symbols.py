@@ -79,7 +79,8 @@ def test_the_systole_of_a_rotation_group_is_twice_the_glide_of_its_mirrors(orbif
         (["*237", "--prove"], "gluing words"),
         (["abAB", "--prove"], "hyperbolic"),
         (["*532", "--systole"], "*532' has 120 elements"),
-        (["532", "--spectrum", "3"], "for infinite groups"),
+        (["532", "--draw", "a.svg", "--function", "1"], "for infinite groups"),
+        (["532", "--spectrum", "0"], "at least 1"),
         (["bolzas"], "Did you mean 'bolza'"),
     ],
 )

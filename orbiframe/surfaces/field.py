@@ -1,0 +1,114 @@
+"""Fields: functions on a surface in space, from values at points of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from orbiframe.components.registry import Registry
+from orbiframe.errors import FitError
+from orbiframe.functions.basis import Basis
+from orbiframe.functions.fitter import Fitter, ValidatedFitter
+from orbiframe.functions.samples import Samples
+from orbiframe.orbifolds.atlas import Points
+from orbiframe.surfaces.nearest import nearest_points
+from orbiframe.surfaces.surface import OrbifoldSurface
+from orbiframe.surfaces.surface_integrals import integration
+
+Floats = NDArray[np.float64]
+
+FITTER = "smoothing"
+
+
+@dataclass(frozen=True, eq=False)
+class Field:
+    """q smooth functions on a surface.
+
+    basis and coefficients (size, q): the functions, but for shift (q,) and scale (q,): a value v is shift + scale * v.
+    points: where the data lie on X/H; distance: (n,), how far from the surface in space they are; left_out: (n, q),
+    what each datum is beyond the field of all others, None where the fitter does not tell; fairing and freedom: how
+    much was smoothed and how many numbers were taken from the data, None likewise.
+    """
+
+    surface: OrbifoldSurface
+    basis: Basis
+    coefficients: Floats
+    shift: Floats
+    scale: Floats
+    points: Points
+    distance: Floats
+    left_out: Floats | None = None
+    fairing: float | None = None
+    freedom: float | None = None
+
+    def evaluate(self, points: Points) -> Floats:
+        """The values (n, q) over points of X/H."""
+        return np.asarray(self.shift + self.scale * self.basis.values(points, self.coefficients))
+
+    @property
+    def error(self) -> Floats | None:
+        """The root mean square (q,) of what is wrong at a datum that the field does not know: leave-one-out."""
+        return None if self.left_out is None else np.sqrt(np.mean(self.left_out**2, axis=0))
+
+
+def fit_field(
+    surface: OrbifoldSurface,
+    points: Points | ArrayLike,
+    values: ArrayLike,
+    *,
+    fitter: Fitter | None = None,
+    basis: Basis | None = None,
+) -> Field:
+    """The smooth functions on a surface that have about these values at these points.
+
+    points: n points of X/H, or (n, 3) points in space, whose nearest points on the surface are meant; values: (n,) or
+    (n, q). fitter: by default the installed one called "smoothing", which finds from the data how much they are to be
+    smoothed; basis: functions on the same X/H, by default those of the surface. Fairness is asked for all over the
+    surface and in its metric, so that few data are joined without ripples. Raises FitError for shapes that do not fit,
+    for values that are not finite, and where the fitter does.
+    """
+    basis = surface.basis if basis is None else basis
+    if isinstance(points, Points):
+        places, distance = points, np.zeros(len(points.patch))
+    else:
+        places, distance = nearest_points(surface, np.asarray(points, dtype=np.float64))
+    wanted = _columns(values, len(places.patch))
+    shift, spread = wanted.mean(axis=0), wanted.std(axis=0)
+    scale = np.where(spread > 1e-14 * np.abs(shift), spread, 1.0)
+    samples = _samples(surface, basis, places, (wanted - shift) / scale)
+    chosen: Fitter = Registry.discover().load("fitter", FITTER)() if fitter is None else fitter
+    if not isinstance(chosen, ValidatedFitter):
+        return Field(surface, basis, chosen.fit(basis, samples), shift, scale, places, distance)
+    found = chosen.fit_validated(basis, samples)
+    left_out = found.left_out[: len(wanted)] * scale
+    return Field(
+        surface, basis, found.coefficients, shift, scale, places, distance, left_out, found.fairing, found.freedom
+    )
+
+
+def _columns(values: ArrayLike, count: int) -> Floats:
+    """The values as columns, (n, q)."""
+    found = np.asarray(values, dtype=np.float64)
+    columns = found[:, None] if found.ndim == 1 else found
+    if columns.ndim != 2 or len(columns) != count or not columns.size:
+        raise FitError(f"{count} points have values of shape {found.shape}; they must be (n,) or (n, q), n at least 1")
+    bad = np.flatnonzero(~np.isfinite(columns).all(axis=1))
+    if len(bad):
+        raise FitError(f"the value of point {bad[0]} is {columns[bad[0]].tolist()}; it must be finite: leave it out")
+    return columns
+
+
+def _samples(surface: OrbifoldSurface, basis: Basis, places: Points, values: Floats) -> Samples:
+    """The data, which stand for the area in equal shares, and places all over the surface where fairness counts."""
+    over, count = integration(surface, basis), len(values)
+    added, columns = len(over.area), values.shape[1]
+    return Samples(
+        Points(np.concatenate([places.patch, over.points.patch]), np.concatenate([places.x, over.points.x])),
+        np.concatenate([values, np.zeros((added, columns))]),
+        np.concatenate([np.full(count, over.area.sum() / count), np.zeros(added)]),
+        np.concatenate([np.ones(count), over.stretch]),
+        np.concatenate([np.zeros(count), over.area]),
+        order=3,
+    )

@@ -1,0 +1,39 @@
+"""Nearest: the points of a surface that are nearest to given ones in space."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from orbiframe.errors import FitError
+from orbiframe.functions.basis import DifferentiableBasis
+from orbiframe.functions.feet import foot_points
+from orbiframe.orbifolds.atlas import Points
+from orbiframe.surfaces.surface import OrbifoldSurface
+
+Floats = NDArray[np.float64]
+
+
+def nearest_points(surface: OrbifoldSurface, targets: Floats, steps: int = 8) -> tuple[Points, Floats]:
+    """The points of X/H whose surface points are nearest to targets (n, 3), and their distances (n,).
+
+    The search begins at the nearest point of the surface over the vertices of its triangulation, and goes on by
+    Newton's method: near the surface it finds the foot of the perpendicular to rounding. Raises FitError for a basis
+    without derivatives, and for targets that are not finite.
+    """
+    targets = np.asarray(targets, dtype=np.float64).reshape(-1, 3)
+    bad = np.flatnonzero(~np.isfinite(targets).all(axis=1))
+    if len(bad):
+        raise FitError(f"point {bad[0]} is {targets[bad[0]].tolist()}; it must be finite: check the data")
+    if not isinstance(surface.basis, DifferentiableBasis):
+        raise FitError("this basis knows no derivatives, which the search needs; use one that does, such as 'ps6'")
+    wanted = (targets - surface.origin) / surface.scale
+    over = Points(surface.triangulation.patch, surface.triangulation.points)
+    there = surface.basis.values(over, surface.coefficients)
+    start = cKDTree(there).query(wanted)[1]
+    longest = float(np.linalg.norm(np.ptp(there, axis=0))) / 10
+    feet, distance = foot_points(
+        surface.basis, surface.coefficients, Points(over.patch[start], over.x[start]), wanted, longest, steps
+    )
+    return feet, distance * surface.scale

@@ -1,0 +1,105 @@
+"""Surface forms: scalar products of functions on X/H, and of their gradients, by area on X or on a surface in space."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array, diags_array
+
+from orbiframe.errors import FitError
+from orbiframe.functions.basis import DifferentiableBasis
+from orbiframe.orbifolds.atlas import Points
+from orbiframe.surfaces.surface import OrbifoldSurface
+from orbiframe.surfaces.surface_integrals import integration
+
+Floats = NDArray[np.float64]
+
+_CHUNK = 1 << 14
+# Gauss points along each direction: one more than the degree, and so many at least.
+_LEAST = 6
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceForms:
+    """Quadratic forms of functions on X/H.
+
+    points: n Gauss points; weights: (n,), the area of each; metric: (n, 3), the entries 11, 12 and 22 of the inverse of
+    the first fundamental form there, in the frames of X.
+    """
+
+    basis: DifferentiableBasis
+    points: Points
+    weights: Floats
+    metric: Floats
+
+    @classmethod
+    def of(
+        cls, surface: OrbifoldSurface, basis: DifferentiableBasis | None = None, *, on_x: bool = False
+    ) -> SurfaceForms:
+        """The forms of the functions of a basis, by default those of the surface, on the surface or on X itself.
+
+        Raises FitError for functions without derivatives.
+        """
+        chosen = surface.basis if basis is None else basis
+        if not isinstance(chosen, DifferentiableBasis):
+            raise FitError("this basis knows no derivatives, which gradients need; use one that does, such as 'ps6'")
+        number = max(getattr(chosen, "degree", 0) + 1, _LEAST)
+        over = integration(surface, chosen, number)
+        if on_x:
+            return cls(chosen, over.points, over.area_on_x, np.tile([1.0, 0.0, 1.0], (len(over.area), 1)))
+        first = surface.jet(over.points).first
+        e, f, g = (np.einsum("ni,ni->n", first[:, a], first[:, b]) for a, b in ((0, 0), (0, 1), (1, 1)))
+        square = (over.area / over.area_on_x * surface.scale**2) ** 2
+        metric = np.stack([g, -f, e], axis=1) / square[:, None]
+        return cls(chosen, over.points, over.area * surface.scale**2, metric)
+
+    @property
+    def area(self) -> float:
+        """The area of the surface, or of X/H."""
+        return float(self.weights.sum())
+
+    @cached_property
+    def mass(self) -> csr_array:
+        """The integrals of b_i b_j, sparse (size, size)."""
+        return self._sum((jets[0].T @ (diags_array(w) @ jets[0])) for jets, w, _ in self._parts(0))
+
+    @cached_property
+    def stiffness(self) -> csr_array:
+        """The integrals of <grad b_i, grad b_j>, sparse (size, size)."""
+        return self._sum(_gradients(jets[1], jets[2], w[:, None] * metric) for jets, w, metric in self._parts(1))
+
+    @cached_property
+    def integrals(self) -> Floats:
+        """The integrals of b_i, (size,)."""
+        return self.against(self.weights)
+
+    def against(self, weighted: Floats) -> Floats:
+        """The integrals of b_i times a function that is given as values times weights at the Gauss points, (n,)."""
+        parts = (jets[0].T @ weighted[chosen] for jets, chosen in self._rows())
+        return np.asarray(sum(parts, start=np.zeros(self.basis.size)))
+
+    def _rows(self) -> Iterator[tuple[list[csr_array], slice]]:
+        for begin in range(0, len(self.weights), _CHUNK):
+            chosen = slice(begin, begin + _CHUNK)
+            part = Points(self.points.patch[chosen], self.points.x[chosen])
+            yield self.basis.jet_matrices(part, 0), chosen
+
+    def _parts(self, order: int) -> Iterator[tuple[list[csr_array], Floats, Floats]]:
+        for begin in range(0, len(self.weights), _CHUNK):
+            chosen = slice(begin, begin + _CHUNK)
+            part = Points(self.points.patch[chosen], self.points.x[chosen])
+            yield self.basis.jet_matrices(part, order), self.weights[chosen], self.metric[chosen]
+
+    def _sum(self, parts: Iterator[csr_array]) -> csr_array:
+        return csr_array(sum(parts, start=csr_array((self.basis.size, self.basis.size))))
+
+
+def _gradients(first: csr_array, second: csr_array, metric: Floats) -> csr_array:
+    """Sum of metric_ij d_i b d_j b over the points."""
+    mixed = first.T @ (diags_array(metric[:, 1]) @ second)
+    found = first.T @ (diags_array(metric[:, 0]) @ first) + second.T @ (diags_array(metric[:, 2]) @ second)
+    return csr_array(found + mixed + mixed.T)

@@ -1,0 +1,32 @@
+"""Fields on surfaces: curvature of meshes, and functions from data."""
+
+from __future__ import annotations
+
+from orbiframe.plugin import Component, hookimpl
+
+
+@hookimpl
+def orbiframe_components() -> list[Component]:
+    """The commands that measure curvature and that fit functions."""
+    return [
+        Component(
+            "command",
+            "curvature",
+            "orbiframe_fields.curvature_command:configure",
+            "principal curvatures and directions at the vertices of a mesh",
+        ),
+        Component(
+            "command",
+            "field",
+            "orbiframe_fields.field_command:configure",
+            "smooth functions on the surface of a mesh from values at points",
+        ),
+    ]
+
+
+@hookimpl
+def orbiframe_warm_up() -> list[str]:
+    """Curvature of a surface of the functions that the command takes."""
+    return [
+        "curvature torus.off -o curvature.csv",
+    ]
