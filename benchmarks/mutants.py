@@ -43,7 +43,7 @@ EQUIVALENT = Path(__file__).with_name("equivalent_mutants.toml")
 # Seconds of tests, as recorded, that are tried on one mutant at most: beside its file, and elsewhere.
 BESIDE, ELSEWHERE = 20.0, 10.0
 STAGES = ("own tests", "folder", "elsewhere")
-PLUGINS = ("bases", "parametrizers", "fitters", "polygons", "exact")
+PLUGINS = ("bases", "parametrizers", "fitters", "polygons", "exact", "remeshing", "lagrange")
 KERNEL = (
     "planes", "meshes", "words", "orbifolds", "groups", "triangulations", "delaunay", "functions", "splines",
     "surfaces", "components", "compiled", "files", "fitting",

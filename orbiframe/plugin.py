@@ -18,6 +18,7 @@ KINDS = (
     "reader",
     "writer",
     "exporter",
+    "elements",
     "picture",
     "command",
 )

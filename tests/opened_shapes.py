@@ -30,6 +30,11 @@ _READERS = {".step": STEPControl_Reader, ".iges": IGESControl_Reader}
 def reopened(surface: OrbifoldSurface, path: Path) -> Any:
     """The shape of a file that a surface is written to."""
     WRITERS[path.suffix](path, surface)
+    return read_back(path)
+
+
+def read_back(path: Path) -> Any:
+    """The shape of a file."""
     opened = _READERS[path.suffix]()
     opened.ReadFile(str(path))
     opened.TransferRoots()

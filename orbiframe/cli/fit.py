@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import argparse
 import time
+import warnings
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from orbiframe.cli.progress import Progress
 from orbiframe.cli.repairs import add_repairs, repaired, repairs_asked
 from orbiframe.cli.report import json_text, summary, write_report
+from orbiframe.cli.speech import say
 from orbiframe.components.registry import Registry
 from orbiframe.errors import UsageError
 from orbiframe.files.destination import require_destination
@@ -20,6 +23,10 @@ if TYPE_CHECKING:
     from orbiframe.fitting.parts import Parts
     from orbiframe.fitting.pipeline import Result
     from orbiframe.meshes.polyhedron import Polyhedron
+
+
+# Faces of a file for CAD, at most, and the least tolerance.
+_MOST_FACES, _LEAST_TOLERANCE = 5000, 1e-7
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -44,6 +51,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--tolerance", metavar="T", type=float, help="largest rms error, of the box's diagonal (output.tolerance)")
     add("--max-error", metavar="T", type=float, help="largest error anywhere, of the box's diagonal (output.max_error)")
     add("--refine", metavar="K", type=int, help="K*K output triangles for each input triangle (output.refine)")
+    add("--faces", metavar="N", type=int, help="to CAD: about so many B-spline faces; default as the topology suggests")
+    add("--export-tolerance", metavar="T", type=float, help="of these faces, of the box's diagonal; default 1e-4")
+    add("--exact", action="store_true", help="to CAD: the exact patches of --basis ps2, ps6 and others")
+    add("--order", metavar="Q", type=int, help="write curved triangles of order 1 to 6, for finite elements")
+    add("--format", metavar="NAME", help="with --order: the format, such as gmsh-2.2, instead of that of the suffix")
     add("--report", metavar="FILE.json", type=Path, help="write the report")
     add("--save", metavar="FILE", type=Path, help="write the surface itself, to be evaluated anywhere")
     add("--json", action="store_true", help="print the report as JSON instead of the summary")
@@ -66,8 +78,12 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     mesh = _repaired(args, config, registry) if repairs_asked(args) else args.mesh
     progress = Progress(quiet=args.quiet)
     found = fit_parts(mesh, config, registry, progress)
-    if exact := _exact(args, config, registry):
-        _export(args.output, _only(found, args.output), registry, progress)
+    written, kind = None, _kind(args, config, registry)
+    if kind == "elements":
+        written = _write_elements(args, found, config.output.refine or 1, registry, progress)
+    elif kind == "exporter":
+        few = _few_faces(args, config, registry)
+        written = _export(args.output, _only(found, args.output), few, registry, progress)
     else:
         gate.write(args.output, found.output, registry)
     if args.save:
@@ -75,8 +91,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     if args.report:
         write_report(args.report, found.report)
     if not args.quiet:
-        written = args.output.stat().st_size if exact else None
-        print(json_text(found.report) if args.json else summary(found.report, exact=written))
+        print(json_text(found.report) if args.json else summary(found.report, written=written))
     return 0
 
 
@@ -99,15 +114,67 @@ def _save(path: Path, found: Parts) -> None:
         save_surface(result.surface, path.with_stem(f"{path.stem}-{number}") if several else path)
 
 
-def _export(path: Path, result: Result, registry: Registry, progress: Progress) -> None:
-    """Write the surface itself, which takes seconds where it has thousands of patches."""
+def _write_elements(
+    args: argparse.Namespace, found: Parts, density: int, registry: Registry, progress: Progress
+) -> str:
+    """Write curved triangles on all surfaces, and say what was written."""
+    from orbiframe.files import gate
+    from orbiframe.surfaces import GeodesicFaces, curved_mesh, input_faces, joined_meshes
+
+    progress("elements", None)
+    start = time.perf_counter()
+    surfaces = [result.surface for result in found.results]
+    faces: list[GeodesicFaces] = [input_faces(surface) for surface in surfaces]
+    mesh = joined_meshes(
+        [curved_mesh(surface, part, args.order, density) for surface, part in zip(surfaces, faces, strict=True)]
+    )
+    gate.write_elements(args.output, mesh, registry, format=args.format)
+    found.report["seconds"]["elements"] = round(time.perf_counter() - start, 4)
+    progress("elements", found.report["seconds"]["elements"])
+    other = any(part.gluing is not surface.refinement.coarse for part, surface in zip(faces, surfaces, strict=True))
+    if other and not args.quiet:
+        say("triangles of the input fold as geodesic triangles, so the elements are Delaunay triangles of its vertices")
+    return f"{len(mesh.elements)} triangles of order {mesh.order}, {len(mesh.nodes)} nodes, {_size(args.output)}"
+
+
+def _size(path: Path) -> str:
+    return f"{path.stat().st_size / 1e6:.2g} MB"
+
+
+def _export(path: Path, result: Result, few: dict[str, object] | None, registry: Registry, progress: Progress) -> str:
+    """Write the surface itself, or a few faces near it, and say what was written; it takes seconds."""
     from orbiframe.files import gate
 
     progress("export", None)
     start = time.perf_counter()
-    gate.export(path, result.surface, registry)
+    found = gate.export(path, result.surface, registry, options=few)
     result.report["seconds"]["export"] = round(time.perf_counter() - start, 4)
     progress("export", result.report["seconds"]["export"])
+    if few is None:
+        return f"exact rational patches, {_size(path)}"
+    result.report["export"] = found
+    for note in _shortcomings(found):
+        result.report["notes"].append(note)
+        warnings.warn(note, stacklevel=2)
+    return (
+        f"{found['faces']} B-spline faces, at most {found['error']:.1e} of the diagonal from the surface, tangent "
+        f"planes within {found['angle']:.2f}°, {_size(path)}"
+    )
+
+
+def _shortcomings(found: dict[str, Any]) -> Iterator[str]:
+    """What a user should know of faces that are not as near, as smooth or as sound as they should be."""
+    place = ", ".join(f"{x:.6g}" for x in found["worst"])
+    if not found["reached"]:
+        yield (
+            f"the faces of the file are {found['error']:.1e} of the diagonal from the surface, and neighbours meet at "
+            f"{found['angle']:.2f}° near ({place}), where the surface may be pinched; try more --faces"
+        )
+    if not found["valid"]:
+        yield (
+            "Open CASCADE does not find the shape of the file valid, as where a surface is pinched or passes through "
+            "itself on an edge; try another number of --faces"
+        )
 
 
 def _repaired(args: argparse.Namespace, config: Config, registry: Registry) -> Polyhedron:
@@ -135,20 +202,74 @@ def overrides(args: argparse.Namespace) -> list[str]:
     return [*fast, *args.set, *(f"{key}={value}" for key, value in named.items() if value is not None)]
 
 
-def _exact(args: argparse.Namespace, config: Config, registry: Registry) -> bool:
-    """Whether the surface itself is written and not a mesh on it: where the format and the functions allow it."""
+def _few_faces(args: argparse.Namespace, config: Config, registry: Registry) -> dict[str, object] | None:
+    """The options of an exporter for a few faces; None for exact patches, or where no exporter makes faces.
+
+    Functions that have exact patches give these unless faces are asked for.
+    """
     from orbiframe.files.gate import exports
+
+    asked = args.faces is not None or args.export_tolerance is not None
+    makes = _makes_faces(args.output, registry)
+    if asked and (args.exact or not makes):
+        raise UsageError(f"{args.output}: --faces and --export-tolerance are for CAD, as part.step, without --exact")
+    if args.exact and not exports(args.output, registry):
+        raise UsageError(f"{args.output}: --exact is for files that hold exact surfaces, such as part.step")
+    if not makes or args.exact or (_piecewise(config, registry) and not asked):
+        return None
+    if args.faces is not None and not 1 <= args.faces <= _MOST_FACES:
+        raise UsageError(f"--faces {args.faces}: give 1 to {_MOST_FACES}")
+    tolerance = 1e-4 if args.export_tolerance is None else args.export_tolerance
+    if not _LEAST_TOLERANCE <= tolerance < 1:
+        raise UsageError(f"--export-tolerance {tolerance:g}: give {_LEAST_TOLERANCE:g} to 1, of the box's diagonal")
+    return {"exact": False, "faces": args.faces or 0, "tolerance": tolerance}
+
+
+def _makes_faces(path: Path, registry: Registry) -> bool:
+    """Whether the exporter of a suffix, if there is one, has an option for the number of faces."""
+    from orbiframe.components.options import options_of
+    from orbiframe.files.gate import component_name, exports
+
+    if not exports(path, registry):
+        return False
+    exporter = registry.load("exporter", component_name(path, registry, "exporter", None))
+    return any(option.name == "faces" for option in options_of(exporter))
+
+
+def _piecewise(config: Config, registry: Registry) -> bool:
+    """Whether the functions have exact patches."""
     from orbiframe.functions.basis import PiecewiseBasis
 
     basis = registry.load("basis", config.basis.name)
-    return exports(args.output, registry) and isinstance(basis, type) and issubclass(basis, PiecewiseBasis)
+    return isinstance(basis, type) and issubclass(basis, PiecewiseBasis)
+
+
+def _exact(args: argparse.Namespace, config: Config, registry: Registry) -> bool:
+    """Whether the surface itself is written and not a mesh on it: where the format and the functions allow it."""
+    from orbiframe.files.gate import exports
+
+    return exports(args.output, registry) and _piecewise(config, registry)
+
+
+def _kind(args: argparse.Namespace, config: Config, registry: Registry) -> str:
+    """The kind of component that writes the output. Raises UsageError for orders that are not made."""
+    from orbiframe.surfaces.curved_triangles import LARGEST_ORDER
+
+    if args.order is None:
+        if args.format is not None:
+            raise UsageError(f"--format {args.format} chooses how elements are written; add --order, such as --order 2")
+        few = _few_faces(args, config, registry) is not None
+        return "exporter" if few or _exact(args, config, registry) else "writer"
+    if not 1 <= args.order <= LARGEST_ORDER:
+        raise UsageError(f"--order {args.order}: elements have an order of 1 to {LARGEST_ORDER}")
+    return "elements"
 
 
 def _require_destinations(args: argparse.Namespace, config: Config, registry: Registry) -> None:
     outputs = {"-o": args.output, "--report": args.report, "--save": args.save}
     plugins = {f"the plugin {path}": path for path in config.plugins}
     require_apart(outputs, {"the input": args.mesh, "--config": args.config, **plugins})
-    require_destination(args.output, registry, kind="exporter" if _exact(args, config, registry) else "writer")
+    require_destination(args.output, registry, args.format, kind=_kind(args, config, registry))
     for path in (args.report, args.save):
         if path is not None:
             require_output(path)

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 
 from orbiframe.cli import plugin as commands
-from orbiframe.cli.progress import compilation_told
+from orbiframe.cli.progress import Progress, compilation_told
 from orbiframe.cli.speech import any_letter, fill_closed_streams, say, silence
 from orbiframe.components.registry import Registry
 from orbiframe.errors import OrbiframeError, UsageError
@@ -63,6 +63,7 @@ def _run(arguments: list[str]) -> int:
 def parsed(arguments: list[str], registry: Registry) -> argparse.Namespace:
     """A command of a registry with its arguments; to be run as `args.run(args, registry)`.
 
+    What takes long is told to `args.progress`, a stage at a time: (name, None), then (name, seconds).
     Raises UsageError for an unknown command and SystemExit for wrong arguments.
     """
     chosen = next((word for word in arguments if not word.startswith("-")), None)
@@ -70,7 +71,9 @@ def parsed(arguments: list[str], registry: Registry) -> argparse.Namespace:
     if chosen is not None:
         registry.component("command", chosen)
     parser.set_defaults(run=lambda *_: _print_help(parser))
-    return parser.parse_args(arguments)
+    args = parser.parse_args(arguments)
+    args.progress = Progress(quiet=getattr(args, "quiet", False))
+    return args
 
 
 def _print_help(parser: argparse.ArgumentParser) -> int:

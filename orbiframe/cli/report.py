@@ -23,13 +23,13 @@ def json_text(report: Mapping[str, Any]) -> str:
     return json.dumps(plain(report), indent=2, allow_nan=False)
 
 
-def summary(report: Mapping[str, Any], *, exact: int | None = None) -> str:
-    """A report in a few lines; exact: the bytes of the file where the surface itself was written, and no mesh on it."""
-    lines = _lines_of_parts(report) if "parts" in report else _lines(report, exact)
+def summary(report: Mapping[str, Any], *, written: str | None = None) -> str:
+    """A report in a few lines; written: what was written, in words, where that is no mesh of flat faces."""
+    lines = _lines_of_parts(report, written) if "parts" in report else _lines(report, written)
     return "\n".join(f"{name:<10}{words}" for name, words in lines)
 
 
-def _lines_of_parts(report: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+def _lines_of_parts(report: Mapping[str, Any], written: str | None) -> Iterator[tuple[str, str]]:
     """The lines of every part, without its output, and those of all together."""
     parts, fit = report["parts"], report["fit"]
     for number, part in enumerate(parts, start=1):
@@ -37,10 +37,10 @@ def _lines_of_parts(report: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield from (line for line in _lines(part, None) if line[0] not in ("output", "seconds"))
     yield "together", f"{len(parts)} parts, {fit['size']} functions, {fit['samples']} samples"
     yield "error", f"rms {fit['rms']:.2e}, max {fit['max']:.2e} of the diagonal of the box of all parts"
-    yield from _ending(report, None)
+    yield from _ending(report, written)
 
 
-def _lines(report: Mapping[str, Any], exact: int | None) -> Iterator[tuple[str, str]]:
+def _lines(report: Mapping[str, Any], written: str | None) -> Iterator[tuple[str, str]]:
     surface, group, mapped, fit = (report[key] for key in ("surface", "group", "map", "fit"))
     yield "surface", f"{surface['name']} (Euler characteristic {surface['euler_characteristic']})"
     cut = report["triangles"]
@@ -66,14 +66,14 @@ def _lines(report: Mapping[str, Any], exact: int | None) -> Iterator[tuple[str, 
     yield "error", f"rms {fit['rms']:.2e}, max {fit['max']:.2e} of the bounding-box diagonal"
     yield from _distances(report["distance"])
     yield from (("warning", note) for note in report["notes"])
-    yield from _ending(report, exact)
+    yield from _ending(report, written)
 
 
-def _ending(report: Mapping[str, Any], exact: int | None) -> Iterator[tuple[str, str]]:
+def _ending(report: Mapping[str, Any], written: str | None) -> Iterator[tuple[str, str]]:
     """What was written, and the time of each stage."""
     out = report["output"]
     mesh = f"{out['vertices']} vertices, {out['faces']} faces"
-    yield "output", mesh if exact is None else f"exact rational patches, {exact / 1e6:.2g} MB"
+    yield "output", mesh if written is None else written
     stages = ", ".join(f"{stage} {seconds:.1f}" for stage, seconds in report["seconds"].items())
     yield "seconds", f"{sum(report['seconds'].values()):.1f} ({stages})"
 

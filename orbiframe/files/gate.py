@@ -15,6 +15,7 @@ from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.plugin import Component
 
 if TYPE_CHECKING:
+    from orbiframe.surfaces.curved_triangles import CurvedMesh
     from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.files.outputs import output, require_output
 from orbiframe.files.places import SIZE_LIMIT, require_readable
@@ -79,15 +80,27 @@ def write(
     _write_whole(path, _component(path, registry, "writer", format, options), polyhedron)
 
 
-def export(path: Path, surface: OrbifoldSurface, registry: Components) -> None:
-    """Write a surface itself, exactly, by the exporter of the file's suffix.
+def export(
+    path: Path, surface: OrbifoldSurface, registry: Components, *, options: Mapping[str, Any] | None = None
+) -> dict[str, Any]:
+    """Write a surface itself, exactly, by the exporter of the file's suffix with its options; what it says of the file.
 
     The file appears whole or not at all, as in `write`. Raises FormatError where the place is unfit or the exporter
-    fails, FitError for a surface that has no exact patches.
+    fails, FitError for a surface that has no exact patches where these are asked for.
     """
     path = Path(path)
     require_output(path)
-    _write_whole(path, _component(path, registry, "exporter", None, None), surface)
+    return dict(_write_whole(path, _component(path, registry, "exporter", None, options), surface) or {})
+
+
+def write_elements(path: Path, mesh: CurvedMesh, registry: Components, *, format: str | None = None) -> None:
+    """Write curved triangles, by the format of elements of the file's suffix or by the one that `format` names.
+
+    The file appears whole or not at all, and errors are as in `write`.
+    """
+    path = Path(path)
+    require_output(path)
+    _write_whole(path, _component(path, registry, "elements", format, None), mesh)
 
 
 def exports(path: Path, registry: Components) -> bool:
@@ -111,7 +124,9 @@ def component_name(path: Path, registry: Components, kind: str, format: str | No
     if not names:
         raise FormatError(_unknown(path, suffix, kind, registry))
     if len(names) > 1:
-        raise PluginError(f"{path}: the {kind}s {', '.join(names)} claim '{suffix}'; name one of them as the format")
+        raise PluginError(
+            f"{path}: the {_plural(kind)} {', '.join(names)} claim '{suffix}'; name one of them as the format"
+        )
     return names[0]
 
 
@@ -124,9 +139,13 @@ def _component(
 
 def _unknown(path: Path, suffix: str, kind: str, registry: Components) -> str:
     known = sorted({s for c in registry.components(kind) for s in c.suffixes})
-    listed = f"the {kind}s know {' '.join(known)}" if known else f"there is no {kind}"
+    listed = f"the {_plural(kind)} know {' '.join(known)}" if known else f"there is no {kind}"
     found = f"the suffix '{suffix}' is not known" if suffix else "the name has no suffix"
     return f"{path}: {found}; {listed}. Name the format where the suffix does not say it.{did_you_mean(suffix, known)}"
+
+
+def _plural(kind: str) -> str:
+    return "formats of elements" if kind == "elements" else f"{kind}s"
 
 
 def _guarded(path: Path, doing: str, component: Callable[..., object], *arguments: object) -> Any:
@@ -140,9 +159,9 @@ def _guarded(path: Path, doing: str, component: Callable[..., object], *argument
         raise FormatError(f"{path}: {doing} failed: {shown(_described(error))}") from error
 
 
-def _write_whole(path: Path, writer: Callable[..., object], content: object) -> None:
+def _write_whole(path: Path, writer: Callable[..., object], content: object) -> Any:
     with output(path) as made:
-        _guarded(path, "writing", writer, made, content)
+        return _guarded(path, "writing", writer, made, content)
 
 
 def _described(error: BaseException) -> str:

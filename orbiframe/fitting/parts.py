@@ -15,11 +15,11 @@ from orbiframe.fitting.pipeline import Result, fit, read_mesh
 from orbiframe.fitting.report import versions
 from orbiframe.fitting.stages import Progress
 from orbiframe.meshes.defects import require_closed_surface
-from orbiframe.meshes.disjoint_union import disjoint_union
 from orbiframe.meshes.orientation import face_components
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.repair import component
 from orbiframe.meshes.sizes import vector_areas
+from orbiframe.meshes.unions import disjoint_union
 
 Floats = NDArray[np.float64]
 

@@ -33,3 +33,4 @@ from .surface_type import (
     doubled_edges as doubled_edges,
     without_unused_vertices as without_unused_vertices,
 )
+from .unions import disjoint_union as disjoint_union

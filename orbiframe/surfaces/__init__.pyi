@@ -1,8 +1,15 @@
 """The public names of orbiframe.surfaces, each with the module it lives in."""
 
+from .curved_triangles import (
+    CurvedMesh as CurvedMesh,
+    curved_mesh as curved_mesh,
+    joined_meshes as joined_meshes,
+    node_exponents as node_exponents,
+)
 from .equations import heat as heat, poisson as poisson
 from .exact_patches import patches_of as patches_of
 from .field import Field as Field, fit_field as fit_field
+from .geodesic_faces import GeodesicFaces as GeodesicFaces, input_faces as input_faces
 from .gram_schmidt import Orthonormal as Orthonormal, orthonormal as orthonormal
 from .nearest import nearest_points as nearest_points
 from .periodic_patch import PeriodicPatch as PeriodicPatch

@@ -21,6 +21,7 @@ POSITIONAL = {
     "reader": 1,
     "writer": 2,
     "exporter": 2,
+    "elements": 2,
     "picture": 2,
     "command": 1,
 }
@@ -63,7 +64,7 @@ def summary_is_one_line(component: Component) -> None:
 
 def suffixes_are_written_alike(component: Component) -> None:
     """Kinds that read or make files name suffixes with a dot in lower case; other kinds name none."""
-    if component.kind in ("reader", "writer", "exporter", "picture"):
+    if component.kind in ("reader", "writer", "exporter", "elements", "picture"):
         assert component.suffixes, f"a {component.kind} names its file suffixes"
     else:
         assert not component.suffixes, f"a {component.kind} has no file suffixes"

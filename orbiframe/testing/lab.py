@@ -16,6 +16,7 @@ from orbiframe.testing.polyhedra import reference_polyhedra
 if TYPE_CHECKING:
     from orbiframe.groups.group import Group
     from orbiframe.orbifolds.orbifold import Orbifold
+    from orbiframe.surfaces.curved_triangles import CurvedMesh
     from orbiframe.surfaces.surface import OrbifoldSurface
     from orbiframe.triangulations.triangulation import Triangulation
 
@@ -74,3 +75,10 @@ class Lab:
 
         shared = reference_surface(name, basis)
         return replace(shared, coefficients=shared.coefficients.copy())
+
+    def curved_mesh(self, name: str, order: int) -> CurvedMesh:
+        """Lagrange triangles of some order on one of the surfaces."""
+        from orbiframe.surfaces.curved_triangles import curved_mesh
+        from orbiframe.surfaces.geodesic_faces import input_faces
+
+        return curved_mesh(self.surfaces[name], input_faces(self.surfaces[name]), order)

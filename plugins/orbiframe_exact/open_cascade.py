@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
+from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.IGESControl import IGESControl_Writer
 from OCP.IGESData import IGESData_GlobalSection, IGESData_IGESWriter
@@ -22,7 +23,9 @@ from OCP.TCollection import TCollection_HAsciiString
 
 from orbiframe import FitError, Notice, OrbifoldSurface, __version__
 from orbiframe.surfaces import PeriodicPatch, patches_of
+from orbiframe_exact.faces_of_surface import described, fitted
 from orbiframe_exact.shapes import shape_of
+from orbiframe_exact.spline_shapes import spline_shape
 
 # Files have no time of day and no path, so that one surface always gives the same bytes.
 _TIME = "1970-01-01T00:00:00"
@@ -32,35 +35,53 @@ _SYSTEM = f"orbiframe {__version__}"
 _AS_TOPOLOGY = 1  # IGES: shells and solids that share their edges, not a heap of trimmed surfaces
 
 
-def write_step(path: Path, surface: OrbifoldSurface) -> None:
-    """The surface as exact rational patches in a STEP file (AP214, millimetres), three for each micro triangle.
+def write_step(
+    path: Path, surface: OrbifoldSurface, *, exact: bool = True, faces: int = 0, tolerance: float = 1e-4
+) -> dict[str, Any]:
+    """The surface in a STEP file (AP214, millimetres): a solid where it has an inside, else a shell.
 
-    A surface in metres is converted, with a notice; one of no unit is written as it is. A solid where it has an inside,
-    else a shell; a tensor product is one periodic surface. Raises FitError for a surface without exact patches, or
-    where Open CASCADE fails.
+    exact: as rational patches, three for each micro triangle; a tensor product is one periodic surface. Otherwise a few
+    polynomial B-spline faces near the surface: faces, about so many, 0 for as many as its topology suggests; tolerance,
+    their largest distance from the surface as a share of the diagonal of its box. Returns what they are in numbers.
+    A surface in metres is converted, with a notice; one of no unit is written as it is. Raises FitError for a surface
+    without exact patches, or derivatives, or where Open CASCADE fails.
     """
-    patches = patches_of(_in_millimetres(path, surface))
-    shape = shape_of(patches)
+    shape, found, periodic = _shape(_in_millimetres(path, surface), exact, faces, tolerance)
     _silence()
     writer = STEPControl_Writer()
     Interface_Static.SetCVal_s("write.step.unit", "MM")
     # Readers find lines in the parameter squares of patches again, and without them files are smaller by a third; not
     # so on a periodic surface, where two of them are one curve in space.
-    Interface_Static.SetIVal_s("write.surfacecurve.mode", int(isinstance(patches, PeriodicPatch)))
+    Interface_Static.SetIVal_s("write.surfacecurve.mode", int(periodic))
     _require(writer.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone, "convert the shape to STEP")
     _sign_step(writer)
     _require(writer.Write(str(path)) == IFSelect_RetDone, "write the STEP file")
+    return found
 
 
-def write_iges(path: Path, surface: OrbifoldSurface) -> None:
-    """The surface as exact rational patches in an IGES file (5.3, millimetres); see `write_step`."""
-    shape = shape_of(patches_of(_in_millimetres(path, surface)))
+def write_iges(
+    path: Path, surface: OrbifoldSurface, *, exact: bool = True, faces: int = 0, tolerance: float = 1e-4
+) -> dict[str, Any]:
+    """The surface in an IGES file (5.3, millimetres); for exact, faces and tolerance see `write_step`."""
+    shape, found, _ = _shape(_in_millimetres(path, surface), exact, faces, tolerance)
     _silence()
     writer = IGESControl_Writer("MM", _AS_TOPOLOGY)
     _require(bool(writer.AddShape(shape)), "convert the shape to IGES")
     writer.ComputeModel()
     _sign_iges(writer)
     Path(path).write_bytes(_iges_text(writer.Model()))
+    return found
+
+
+def _shape(surface: OrbifoldSurface, exact: bool, faces: int, tolerance: float) -> tuple[Any, dict[str, Any], bool]:
+    """The shape to write, what it is in numbers, and whether it is one periodic face."""
+    if exact:
+        patches = patches_of(surface)
+        return shape_of(patches), {}, isinstance(patches, PeriodicPatch)
+    few = fitted(surface, faces or None, tolerance)
+    shape = spline_shape(few, surface)
+    found = described(few, surface, tolerance) | {"valid": bool(BRepCheck_Analyzer(shape).IsValid())}
+    return shape, found, False
 
 
 def _in_millimetres(path: Path, surface: OrbifoldSurface) -> OrbifoldSurface:

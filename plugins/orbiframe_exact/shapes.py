@@ -22,19 +22,20 @@ from orbiframe.surfaces import PeriodicPatch, QuadrilateralPatches, TrianglePatc
 Floats = NDArray[np.float64]
 
 # The least tolerance of Open CASCADE, and one for what is far from the origin.
-_TOLERANCE, _ROUNDING = 1e-7, 1e-14
+TOLERANCE, ROUNDING = 1e-7, 1e-14
 _CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
 
 
 def shape_of(patches: TrianglePatches | PeriodicPatch) -> Any:
     """A closed shell of faces on the patches; a solid with this shell where the surface has an inside."""
     if isinstance(patches, PeriodicPatch):
-        return _joined([_periodic_face(patches)], closed=not patches.glide, solid=not patches.glide)
+        return joined([_periodic_face(patches)], closed=not patches.glide, solid=not patches.glide)
     quadrilaterals = patches.quadrilaterals()
-    return _joined(_faces(quadrilaterals), closed=True, solid=not quadrilaterals.gluing.same.any())
+    return joined(_faces(quadrilaterals), closed=True, solid=not quadrilaterals.gluing.same.any())
 
 
-def _joined(faces: Iterable[Any], *, closed: bool, solid: bool) -> Any:
+def joined(faces: Iterable[Any], *, closed: bool, solid: bool) -> Any:
+    """A shell of faces, or a solid with this shell."""
     builder, shell = BRep_Builder(), TopoDS_Shell()
     builder.MakeShell(shell)
     for face in faces:
@@ -53,7 +54,7 @@ def _joined(faces: Iterable[Any], *, closed: bool, solid: bool) -> Any:
 
 def _faces(patches: QuadrilateralPatches) -> list[Any]:
     """A face on every patch, with edges and vertices that are shared as the gluing says."""
-    tolerance = max(_TOLERANCE, _ROUNDING * float(np.abs(patches.points).max()))
+    tolerance = max(TOLERANCE, ROUNDING * float(np.abs(patches.points).max()))
     edges = _edges(patches, tolerance)
     return [
         _face(points, weights, edges[4 * p : 4 * p + 4], tolerance)
@@ -86,7 +87,7 @@ def _vertices(patches: QuadrilateralPatches, tolerance: float) -> list[Any]:
     made = []
     for corner in np.unique(classes, return_index=True)[1]:
         vertex = TopoDS_Vertex()
-        builder.MakeVertex(vertex, _point(corners[corner]), tolerance)
+        builder.MakeVertex(vertex, point_of(corners[corner]), tolerance)
         made.append(vertex)
     return [made[c] for c in classes]
 
@@ -95,25 +96,22 @@ def _curve(patches: QuadrilateralPatches, side: int) -> Any:
     """The border curve of a side, from 0 to 1."""
     patch, c = divmod(side, 4)
     along = (np.s_[:, 0], np.s_[-1, :], np.s_[::-1, -1], np.s_[0, ::-1])[c]
-    poles = Array1_gp_Pnt(1, patches.degree + 1)
-    for i, point in enumerate(patches.points[patch][along]):
-        poles.SetValue(i + 1, _point(point))
-    return Geom_BezierCurve(poles, _array(patches.weights[patch][along]))
+    return Geom_BezierCurve(pole_row(patches.points[patch][along]), number_row(patches.weights[patch][along]))
 
 
 def _face(points: Floats, weights: Floats, sides: list[tuple[Any, bool]], tolerance: float) -> Any:
     builder, face, wire = BRep_Builder(), TopoDS_Face(), TopoDS_Wire()
-    builder.MakeFace(face, Geom_BezierSurface(_poles(points), _matrix(weights)), TopLoc_Location(), tolerance)
+    builder.MakeFace(face, Geom_BezierSurface(pole_table(points), _matrix(weights)), TopLoc_Location(), tolerance)
     builder.MakeWire(wire)
     for c, (edge, forward) in enumerate(sides):
-        builder.UpdateEdge(edge, _line(c, forward), face, tolerance)
+        builder.UpdateEdge(edge, border_line(c, forward), face, tolerance)
         builder.Add(wire, edge.Oriented(TopAbs_FORWARD if forward else TopAbs_REVERSED))
     wire.Closed(True)
     builder.Add(face, wire)
     return face
 
 
-def _line(side: int, forward: bool) -> Any:
+def border_line(side: int, forward: bool) -> Any:
     """The border of the unit square as the edge runs, from 0 to 1."""
     start, end = _CORNERS[side], _CORNERS[(side + 1) % 4]
     if not forward:
@@ -131,23 +129,33 @@ def _periodic_face(patch: PeriodicPatch) -> Any:
     for axis, (_, first) in enumerate(numbers):
         # Here N_0 begins at the first knot; there the last of the first knots is knot `degree` of pole 1.
         points = np.roll(points, patch.degree + 1 - int(first[0]), axis=axis)
-    knots = [_array(np.append(k, k[0] + p)) for (k, _), p in zip(numbers, patch.periods, strict=True)]
-    times = [_integers(np.append(t, t[0])) for _, t in numbers]
-    surface = Geom_BSplineSurface(_poles(points), *knots, *times, patch.degree, patch.degree, True, True)
+    knots = [number_row(np.append(k, k[0] + p)) for (k, _), p in zip(numbers, patch.periods, strict=True)]
+    times = [integer_row(np.append(t, t[0])) for _, t in numbers]
+    surface = Geom_BSplineSurface(pole_table(points), *knots, *times, patch.degree, patch.degree, True, True)
     if patch.glide:
         u, v = (float(k[0]) for k, _ in numbers)
         surface.Segment(u, u + 1, v, v + 1)
-    return BRepBuilderAPI_MakeFace(surface, _TOLERANCE).Face()
+    return BRepBuilderAPI_MakeFace(surface, TOLERANCE).Face()
 
 
 # ---- numbers --------------------------------------------------------------------------------------------------------
 
 
-def _point(point: Floats) -> Any:
+def point_of(point: Floats) -> Any:
+    """A point (3,) of Open CASCADE."""
     return gp_Pnt(*point.tolist())
 
 
-def _poles(points: Floats) -> Any:
+def pole_row(points: Floats) -> Any:
+    """Control points (n, 3) of a curve."""
+    made = Array1_gp_Pnt(1, len(points))
+    for i, point in enumerate(points.tolist()):
+        made.SetValue(i + 1, gp_Pnt(*point))
+    return made
+
+
+def pole_table(points: Floats) -> Any:
+    """Control points (m, n, 3) of a surface."""
     rows, columns = points.shape[:2]
     made = Array2_gp_Pnt(1, rows, 1, columns)
     for i, row in enumerate(points.tolist()):
@@ -164,14 +172,16 @@ def _matrix(numbers: Floats) -> Any:
     return made
 
 
-def _array(numbers: Floats) -> Any:
+def number_row(numbers: Floats) -> Any:
+    """Numbers (n,) of Open CASCADE."""
     made = Array1_double(1, len(numbers))
     for i, number in enumerate(numbers.tolist()):
         made.SetValue(i + 1, number)
     return made
 
 
-def _integers(numbers: NDArray[np.intp]) -> Any:
+def integer_row(numbers: NDArray[np.intp]) -> Any:
+    """Integers (n,) of Open CASCADE."""
     made = Array1_int(1, len(numbers))
     for i, number in enumerate(numbers.tolist()):
         made.SetValue(i + 1, number)

@@ -9,7 +9,7 @@ import pytest
 from fitted import REGISTRY
 
 from orbiframe.files.gate import write
-from orbiframe.meshes.disjoint_union import disjoint_union
+from orbiframe.meshes.unions import disjoint_union
 from orbiframe.testing.polyhedra import reference_polyhedra
 
 
@@ -47,7 +47,7 @@ def test_bumps_become_a_mesh_where_the_format_has_one(orbiframe, cube, tmp_path)
 @pytest.mark.usefixtures("_no_fit")
 def test_bumps_have_no_exact_form(orbiframe, cube, tmp_path):
     """It is said before the fit, with what to do."""
-    ran = orbiframe("fit", cube, "-o", tmp_path / "a.step", "--basis", "gaussian")
+    ran = orbiframe("fit", cube, "-o", tmp_path / "a.step", "--basis", "gaussian", "--exact")
     assert ran.status == 1
     assert "--basis ps2" in ran.err
     assert not (tmp_path / "a.step").exists()

@@ -115,6 +115,12 @@ def test_every_exporter_is_in_the_table_of_exact_formats(registry):
     assert sorted(shown) == sorted(declared)
 
 
+def test_every_format_of_elements_is_in_the_table(registry):
+    rows = table_rows(section(REFERENCE / "formats.md", "Elements"))
+    shown = [(unquoted(name), tuple(unquoted(suffixes).split())) for name, suffixes, _ in rows]
+    assert sorted(shown) == sorted((c.name, c.suffixes) for c in registry.components("elements"))
+
+
 COLUMNS = {"normals": 4, "colors": 5, "face_colors": 6}
 
 

@@ -14,9 +14,9 @@ from orbiframe.errors import TopologyError
 from orbiframe.files import gate
 from orbiframe.fitting import pipeline
 from orbiframe.fitting.parts import fit_parts
-from orbiframe.meshes.disjoint_union import disjoint_union
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.surface_type import surface_type
+from orbiframe.meshes.unions import disjoint_union
 
 pytestmark = pytest.mark.long
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from orbiframe.meshes.disjoint_union import disjoint_union
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.surface_type import surface_type
+from orbiframe.meshes.unions import disjoint_union
 from orbiframe.testing.polyhedra import reference_polyhedra
 
 FLAT = Polyhedron.from_faces([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])

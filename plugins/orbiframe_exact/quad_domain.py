@@ -1,0 +1,155 @@
+"""Quad domain: X/H cut into a few quadrilaterals, pairs of triangles of a coarse Delaunay triangulation."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import Bounds, LinearConstraint, milp
+from scipy.sparse import coo_array
+
+from orbiframe import FitError, OrbifoldSurface, Points
+from orbiframe.delaunay import domain_for, vertex_points
+from orbiframe.triangulations import GeodesicTriangulation
+from orbiframe_exact.quad_points import QuadPoints, settled
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+# What a pair is worth beside its quality, so that no triangle stays alone, and the quality of one that is not convex.
+_PAIR, _NOT_CONVEX = 20.0, -5.0
+# Readers of CAD files may mistake a face that meets a vertex twice; it is taken where there is no other way.
+_MEETS_ITSELF = -10.0
+# How many vertices more are tried, as shares of those asked for.
+_MORE = (0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.5)
+_LOOK = np.linspace(0.02, 0.98, 7)
+
+
+@dataclass(frozen=True, eq=False)
+class QuadDomain:
+    """Quadrilaterals that cover X/H, with their sides glued.
+
+    Side k of a quadrilateral runs from its corner k to the next: along s at t = 0, along t at s = 1, and back. edge:
+    (Q, 4), the edge at every side; rising: (Q, 4), whether the parameter of the edge grows with s or t there; ends:
+    (E, 2), the vertices where every edge begins and ends; orientable: whether all can be seen from one side.
+    """
+
+    points: QuadPoints
+    edge: Ints
+    rising: Bools
+    ends: Ints
+    orientable: bool
+
+    @property
+    def count(self) -> int:
+        """Number of quadrilaterals."""
+        return len(self.edge)
+
+    def sides_of_edges(self) -> Ints:
+        """The two sides 4 q + k at every edge, (E, 2)."""
+        return np.argsort(self.edge.ravel(), kind="stable").reshape(-1, 2)
+
+
+def default_count(surface: OrbifoldSurface) -> int:
+    """How many faces a surface has where none are asked for: 16 and 8 for each unit of |chi|."""
+    return 16 + 8 * abs(int(surface.orbifold.euler_characteristic))
+
+
+def quad_domain(surface: OrbifoldSurface, count: int) -> QuadDomain:
+    """About `count` quadrilaterals: a perfect matching of triangles of greatest quality, of V = count + chi vertices.
+
+    The quality of a pair is the least sine between the two directions on the surface, or the root of the least area
+    element over the greatest. Pairs that meet a vertex twice come last. Where triangles cannot be paired, or a
+    quadrilateral would be glued to itself, there are more vertices. Raises FitError where that does not help.
+    """
+    chi = int(surface.orbifold.euler_characteristic)
+    for more in _MORE:
+        vertices = max(count + chi, 1) + math.ceil(more * count)
+        sites = domain_for(surface.orbifold, surface.triangulation, vertices, (1, 0, 0))
+        found = _paired(surface, sites)
+        if found is not None:
+            return found
+    raise FitError(f"no {count} faces cover this surface; ask for more of them, such as --faces {2 * count}")
+
+
+def _paired(surface: OrbifoldSurface, sites: GeodesicTriangulation) -> QuadDomain | None:
+    halfedge, vertex = np.arange(3 * sites.face_count), sites.vertex.ravel()
+    start, end = vertex, vertex[_following(halfedge)]
+    inner = np.flatnonzero(sites.reference & (halfedge // 3 != sites.twin // 3))
+    corners, sides, back = _quads(sites, inner)
+    corner = np.where(back, end[sides], start[sides])
+    twice = (np.diff(np.sort(corner, axis=1), axis=1) == 0).any(axis=1)
+    points = QuadPoints(surface, corners, sites.patch[inner // 3], sites.placement[inner // 3])
+    worth = _PAIR + _quality(points) + np.where(twice, _MEETS_ITSELF, 0.0)
+    chosen = _matching(np.stack([inner, sites.twin[inner]]) // 3, worth, sites.face_count)
+    if chosen is None:
+        return None
+    sides, back = sides[chosen], back[chosen]
+    reference = np.minimum(sides, sites.twin[sides])
+    edges, edge = np.unique(reference, return_inverse=True)
+    if (np.diff(np.sort(edge.reshape(sides.shape), axis=1), axis=1) == 0).any():
+        return None
+    along = ((sides == reference) | sites.same[sides]) ^ back
+    weighted = corners[chosen] * _weights(surface, sites)[corner[chosen]][..., None]
+    return QuadDomain(
+        QuadPoints(surface, weighted, points.patch[chosen], points.placement[chosen]),
+        edge.reshape(sides.shape),
+        along ^ np.array([False, False, True, True]),
+        np.stack([start[edges], end[edges]], axis=1),
+        surface.orbifold.orientable,
+    )
+
+
+def _quads(sites: GeodesicTriangulation, inner: Ints) -> tuple[Floats, Ints, Bools]:
+    """The quadrilateral about every halfedge, in the frame of its triangle: corners, halfedges at its sides, and
+    whether these run back.
+    """
+    face, c = np.divmod(inner, 3)
+    other, k = np.divmod(sites.twin[inner], 3)
+    apex = sites.geometry.act(sites.gluing[inner], sites.corners[other, (k + 2) % 3])
+    near, far = sites.corners[face, c], sites.corners[face, (c + 1) % 3]
+    corners = np.stack([sites.corners[face, (c + 2) % 3], near, apex, far], axis=1)
+    same, after, last = sites.same[inner], 3 * other + (k + 1) % 3, 3 * other + (k + 2) % 3
+    one, two = np.where(same, last, after), np.where(same, after, last)
+    sides = np.stack([3 * face + (c + 2) % 3, one, two, 3 * face + (c + 1) % 3], axis=1)
+    return corners, sides, np.stack([np.zeros_like(same), same, same, np.zeros_like(same)], axis=1)
+
+
+def _quality(points: QuadPoints) -> Floats:
+    """How square each quadrilateral is on the surface, from 0 to 1; less where it is not convex in X."""
+    x = points.corners
+    turns = [np.linalg.det(np.stack([x[:, k - 1], x[:, k], x[:, (k + 1) % 4]], axis=1)) for k in range(4)]
+    convex = np.flatnonzero((np.stack(turns) > 0).all(axis=0))
+    s, t = (grid.ravel() for grid in np.meshgrid(_LOOK, _LOOK))
+    _, fs, ft = points.jets(np.repeat(convex, len(s)), np.tile(s, len(convex)), np.tile(t, len(convex)), 1)
+    area = np.linalg.norm(np.cross(fs, ft), axis=1)
+    sine = area / np.maximum(np.linalg.norm(fs, axis=1) * np.linalg.norm(ft, axis=1), np.finfo(float).tiny)
+    area, sine = area.reshape(len(convex), -1), sine.reshape(len(convex), -1)
+    even = np.sqrt(area.min(axis=1) / np.maximum(area.max(axis=1), np.finfo(float).tiny))
+    quality = np.full(len(x), _NOT_CONVEX)
+    quality[convex] = np.minimum(sine.min(axis=1), even)
+    return quality
+
+
+def _matching(pairs: Ints, worth: Floats, count: int) -> Ints | None:
+    """The perfect matching of `count` things of greatest worth, as numbers of pairs (2, n); None if there is none."""
+    number = pairs.shape[1]
+    entries = np.ones(2 * number), (pairs.ravel(), np.tile(np.arange(number), 2))
+    each = LinearConstraint(coo_array(entries, shape=(count, number)), 1, 1)
+    found = milp(-worth, constraints=each, integrality=np.ones(number, dtype=np.intp), bounds=Bounds(0, 1))
+    return None if found.x is None else np.flatnonzero(found.x > 0.5)
+
+
+def _weights(surface: OrbifoldSurface, sites: GeodesicTriangulation) -> Floats:
+    """The fourth root of the area element at every vertex: the speed in space is then equal at both ends of a side."""
+    points, _ = settled(surface, vertex_points(sites))
+    basis = surface.basis
+    d = basis.jets(Points(points.patch, points.x), surface.coefficients, 1)  # type: ignore[attr-defined]
+    return np.asarray(np.linalg.norm(np.cross(d[1], d[2]), axis=1) ** 0.25)
+
+
+def _following(halfedge: Ints) -> Ints:
+    return np.asarray(halfedge - halfedge % 3 + (halfedge + 1) % 3)

@@ -1,0 +1,69 @@
+"""Fits that are written for CAD as a few faces."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from fitted import DATASETS
+
+CUBE = DATASETS / "cube.off"
+
+
+@pytest.fixture(autouse=True)
+def _open_cascade():
+    pytest.importorskip("OCP", reason='Open CASCADE is the extra "orbiframe[cad]"')
+
+
+@pytest.mark.parametrize("name", ["cube.step", "cube.igs"])
+def test_few_faces_are_what_a_cad_file_holds(orbiframe, tmp_path, name):
+    ran = orbiframe("fit", CUBE, "-o", tmp_path / name, "--size", 100)
+    assert (ran.status, ran.err) == (0, "")
+    assert "B-spline faces" in ran.out
+    assert "tangent planes within 0.0" in ran.out or "tangent planes within 0.10" in ran.out
+    assert (tmp_path / name).stat().st_size < 1_500_000
+
+
+def test_the_report_has_the_faces(orbiframe, tmp_path):
+    options = ("--size", 100, "--faces", 40, "--export-tolerance", 1e-3, "--json")
+    found = json.loads(orbiframe("fit", CUBE, "-o", tmp_path / "cube.stp", *options).out)["export"]
+    assert found["faces"] == 40
+    assert found["error"] <= 1e-3
+    assert found["angle"] <= 0.1
+    assert found["reached"]
+    assert found["valid"]
+
+
+def test_splines_have_exact_patches_unless_faces_are_asked_for(orbiframe, tmp_path):
+    plain = orbiframe("fit", CUBE, "-o", tmp_path / "a.step", "--basis", "ps6", "--size", 60)
+    few = orbiframe("fit", CUBE, "-o", tmp_path / "b.step", "--basis", "ps6", "--size", 60, "--export-tolerance", 1e-3)
+    assert "exact rational patches" in plain.out
+    assert "B-spline faces" in few.out
+
+
+def test_what_is_not_reached_is_told_with_its_place(orbiframe, tmp_path, monkeypatch):
+    from orbiframe_exact import few_faces
+
+    monkeypatch.setattr(few_faces, "_ROUNDS", 1)
+    ran = orbiframe("fit", CUBE, "-o", tmp_path / "a.step", "--size", 100, "--export-tolerance", 1e-6)
+    assert ran.status == 0
+    assert "near (" in ran.err
+    assert "--faces" in ran.err
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--faces", 0), "give 1 to"),
+        (("--export-tolerance", 0), "give 1e-07 to 1"),
+        (("--faces", 20, "--exact"), "without --exact"),
+        (("--faces", 20, "-o", "a.ply"), "for CAD"),
+        (("--exact", "-o", "a.ply"), "--exact"),
+    ],
+)
+def test_what_cannot_be(orbiframe, tmp_path, monkeypatch, options, words):
+    monkeypatch.chdir(tmp_path)
+    ran = orbiframe("fit", CUBE, "-o", "a.step", *options)
+    assert ran.status == 2
+    assert words in ran.err
+    assert list(tmp_path.iterdir()) == []
