@@ -18,9 +18,11 @@ from orbiframe.triangulations.triangulation import Triangulation
 SEEDS = st.integers(0, 2**32 - 1)
 
 
-def everywhere() -> list:
-    made = [pytest.param(reference_triangulations()[name], id=name) for name in RECIPES]
-    return made + [pytest.param(closed_form(name, 2), id=f"closed form {name}") for name in ALL]
+@pytest.fixture(params=[*RECIPES, *(f"closed form {name}" for name in ALL)])
+def made(request: pytest.FixtureRequest) -> Triangulation:
+    """A map on every surface."""
+    name = request.param.removeprefix("closed form ")
+    return closed_form(name, 2) if name != request.param else reference_triangulations()[name]
 
 
 def flat_torus(n: int, place) -> Triangulation:
@@ -55,7 +57,6 @@ def with_diagonals(atlas):
     return replace(atlas, tail=ends, head=ends, inverse=inverse, isometry=np.concatenate([atlas.isometry, both]))
 
 
-@pytest.mark.parametrize("made", everywhere())
 def test_an_embedding_is_positive_and_covers_the_surface_once(made: Triangulation) -> None:
     assert made.not_positive == 0
     assert (made.areas > 0).all()
@@ -72,13 +73,11 @@ def test_a_map_that_does_not_have_the_area_of_the_surface_shows_it(name: str, wr
     assert larger.area_defect == pytest.approx(abs(1 / wrong - 1), rel=1e-9)
 
 
-@pytest.mark.parametrize("made", everywhere())
 def test_transitions_of_twins_are_inverse_or_equal(made: Triangulation) -> None:
     mesh, atlas, t = made.polyhedron, made.orbifold.atlas, made.transition
     np.testing.assert_array_equal(t[mesh.twin], np.where(mesh.same, t, atlas.inverse[t]))
 
 
-@pytest.mark.parametrize("made", everywhere())
 def test_angles_add_up_to_a_full_turn_at_every_vertex(made: Triangulation) -> None:
     x, geometry = made.lifts, made.orbifold.geometry
     angle = np.stack([geometry.angle(x[:, k], x[:, (k + 1) % 3], x[:, (k + 2) % 3]) for k in range(3)], axis=1)
@@ -86,7 +85,6 @@ def test_angles_add_up_to_a_full_turn_at_every_vertex(made: Triangulation) -> No
     np.testing.assert_allclose(around, 2 * np.pi, atol=1e-9)
 
 
-@pytest.mark.parametrize("made", everywhere())
 def test_lifts_are_the_ends_of_lifted_edges(made: Triangulation) -> None:
     """Corner by corner: the second is one edge away, the third is the first seen back along the third edge."""
     atlas = made.orbifold.atlas
@@ -98,7 +96,6 @@ def test_lifts_are_the_ends_of_lifted_edges(made: Triangulation) -> None:
         np.testing.assert_allclose(made.lifts[face], [made.points[i], second, third], atol=1e-9)
 
 
-@pytest.mark.parametrize("made", everywhere())
 def test_neighbours_agree_on_their_common_edge(made: Triangulation) -> None:
     mesh, atlas = made.polyhedron, made.orbifold.atlas
     h = np.flatnonzero(mesh.representative)
@@ -128,7 +125,6 @@ def test_neighbours_agree_on_their_common_edge(made: Triangulation) -> None:
     np.testing.assert_allclose(mine, np.einsum("nij,nj->ni", atlas.isometry[step], theirs), atol=1e-9)
 
 
-@pytest.mark.parametrize("made", everywhere())
 def test_barycentric_corners_are_the_vertices(made: Triangulation) -> None:
     count = made.polyhedron.face_count
     for corner in range(3):
@@ -178,7 +174,6 @@ def test_a_collapsed_triangle_is_not_positive() -> None:
     assert replace(made, points=points).not_positive == 6
 
 
-@pytest.mark.parametrize("made", everywhere())
 def test_signs_follow_reversed_faces(made: Triangulation) -> None:
     """Reversed triangles have reversed signs, and areas that stay positive."""
     mesh = made.polyhedron
