@@ -67,6 +67,15 @@ def _run(program, rows, height, columns, entries, jets, live):  # type: ignore[n
                     jets[s, e] += (mu1 if _ALONG[e] == 0 else mu2) * jets[below, _LOWER[e]]
 
 
+@compiled(inline=True)
+def _run_where_reached(bounds, program, rows, height, columns, entries, jets, live):  # type: ignore[no-untyped-def]
+    """Whether the functions of a knot set reach a point; if so, the jets of all states are there."""
+    if not _reaches(bounds, columns):
+        return False
+    _run(program, rows, height, columns, entries, jets, live)
+    return True
+
+
 @compiled
 def _times_linear(row, columns, jet, entries, out):  # type: ignore[no-untyped-def]
     """The jet of a linear function times F from the jet of F (rule of Leibniz)."""
@@ -162,9 +171,8 @@ def fill_columns(place, reach, knot_sets, program, family, row_start, slots, val
         for c in range(first[face[n]], first[face[n] + 1]):
             e = knot_set[c]
             _moved(isometry[c], columns[n], here)
-            if not _reaches(bounds[e], here):
+            if not _run_where_reached(bounds[e], (start, child, orders), rows[e], height[e], here, entries, jets, live):
                 continue
-            _run((start, child, orders), rows[e], height[e], here, entries, jets, live)
             for o in range(len(outputs)):
                 if live[outputs[o]]:
                     _emit(e, family, outputs[o], o, here, jets, entries, shape, product, out)
@@ -188,9 +196,8 @@ def evaluate(place, reach, knot_sets, program, family, column, coefficients, val
         for c in range(first[face[n]], first[face[n] + 1]):
             e = knot_set[c]
             _moved(isometry[c], columns[n], here)
-            if not _reaches(bounds[e], here):
+            if not _run_where_reached(bounds[e], (start, child, orders), rows[e], height[e], here, entries, jets, live):
                 continue
-            _run((start, child, orders), rows[e], height[e], here, entries, jets, live)
             for o in range(len(outputs)):
                 if live[outputs[o]]:
                     _emit(e, family, outputs[o], o, here, jets, entries, shape, product, out)

@@ -122,7 +122,7 @@ def test_knots_in_no_half_space_have_no_simplex_spline() -> None:
         Simplex(octahedron.orbifold, octahedron, degree=3)
 
 
-@pytest.mark.parametrize(("degree", "seed"), [(2, 13), (2, 25), (3, 9), (3, 13)])
+@pytest.mark.parametrize(("degree", "seed"), [(2, 25), (2, 36), (3, 9), (3, 13)])
 def test_knots_need_no_half_space_about_their_mean(degree: int, seed: int) -> None:
     """Twelve sites on the sphere: some knots lie behind the mean of their spline, and all in some half-space."""
     octahedron = checks.sphere()
