@@ -9,6 +9,7 @@ import os
 import shlex
 import sys
 import tempfile
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -71,7 +72,9 @@ def _say(number: int, total: int, text: str) -> None:
 def _succeeds(command: str, registry: Registry) -> bool:
     from orbiframe.cli.main import parsed
 
-    with contextlib.redirect_stdout(io.StringIO()):
+    # What the commands say of the small meshes helps nobody.
+    with contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
         args = parsed(shlex.split(command), registry)
         try:
             return int(args.run(args, registry)) == 0

@@ -20,6 +20,9 @@ from orbiframe.triangulations.triangulation import Triangulation
 _GRADING = 0.6
 # The longest edge on the sphere: the ends of an edge of length pi have no geodesic between them.
 _LONGEST = 0.9 * np.pi
+# Of a coarse domain on the sphere no edge should be as long as a quarter of a great circle, beyond which the functions
+# of odd degree, divided by what is nearest to 1, have poles. So many further steps even it out.
+_COARSE, _QUARTER, _FURTHER = 50, 0.95 * np.pi / 2, 12
 
 
 def spline_domain(
@@ -32,8 +35,8 @@ def spline_domain(
     steps of Lloyd as `smoothing` says make the triangles rounder; with the square of the density of the sites as
     weight, they keep it. The triangles are Delaunay in X and positive, down to one vertex (on the sphere and the
     projective plane down to what its geodesic triangles need, with a few more sites where an edge would be almost half
-    of a great circle). Raises FitError if the mesh has fewer distinct vertices; MapError if the sphere has too few
-    sites or the map has folds.
+    of a great circle; few sites on the sphere get further steps while an edge is longer than a quarter of one). Raises
+    FitError if the mesh has fewer distinct vertices; MapError if the sphere has too few sites or the map has folds.
     """
     mesh = triangulation.polyhedron
     lengths = site_lengths(triangulation, grading)
@@ -49,7 +52,17 @@ def spline_domain(
     found = delaunay_of_vertices(start, number[chosen]).triangulation
     if found.geometry.curvature > 0 and found.edge_lengths.max() > _LONGEST:
         return spline_domain(triangulation, vertices + 1, smoothing=smoothing, grading=grading)
-    return lloyd(found, smoothing, region_areas(found) ** -2.0) if smoothing else found
+    return _without_long_edges(lloyd(found, smoothing, region_areas(found) ** -2.0)) if smoothing else found
+
+
+def _without_long_edges(found: GeodesicTriangulation) -> GeodesicTriangulation:
+    """A coarse domain on the sphere made even until no edge is too long."""
+    if found.geometry.curvature > 0 and found.vertex_count <= _COARSE:
+        for _ in range(_FURTHER):
+            if found.edge_lengths.max() <= _QUARTER:
+                break
+            found = lloyd(found)
+    return found
 
 
 def domain_for(
