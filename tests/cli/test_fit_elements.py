@@ -20,6 +20,7 @@ def test_every_suffix_is_written_and_told(orbiframe, tmp_path, name):
     assert (tmp_path / name).stat().st_size > 1000
 
 
+@pytest.mark.long
 def test_each_triangle_is_cut_as_refine_says(orbiframe, tmp_path):
     for refine in (1, 2):
         ran = orbiframe(
@@ -30,6 +31,7 @@ def test_each_triangle_is_cut_as_refine_says(orbiframe, tmp_path):
     assert len(two) == 4 * len(one)
 
 
+@pytest.mark.long
 def test_another_format_by_its_name(orbiframe, tmp_path):
     for command, options in (("fit", ()), ("remesh", ("--vertices", 60))):
         out = tmp_path / "cube.msh"
@@ -45,6 +47,7 @@ def test_remeshed_elements_are_as_many_as_the_triangles(orbiframe, tmp_path):
     assert (found["order"], found["faces"], found["nodes"]) == (4, 156, 2 + 156 * 8)
 
 
+@pytest.mark.long
 def test_several_surfaces_in_one_file(orbiframe, tmp_path):
     from orbiframe import Registry, read, write
     from orbiframe.meshes import disjoint_union

@@ -60,6 +60,7 @@ def test_in_a_fan_of_needles_few_are_tried() -> None:
         assert tried < 300 * len(points)
 
 
+@pytest.mark.long
 def test_all_triangles_agree_with_brute_force() -> None:
     """Points, sides and insides of triangles of every shape, those without area too."""
     rng = np.random.default_rng(4)

@@ -60,6 +60,7 @@ def error_of_poisson(basis: str, size: int) -> float:
     return float(np.sqrt(weights @ (found - wanted) ** 2 / (weights @ wanted**2)))
 
 
+@pytest.mark.long
 def test_poisson_with_the_order_that_the_degree_promises():
     """Quadratics: a third order, an eighth of the error for four times the functions."""
     coarse, fine = (error_of_poisson("ps2", size) for size in (400, 1600))

@@ -42,6 +42,7 @@ def test_a_smooth_function_is_found_from_points_in_space(torus):
         assert field.distance.max() < 1e-9
 
 
+@pytest.mark.long
 def test_left_out_is_what_a_fit_without_the_datum_misses(torus):
     points = scattered(torus, 60)
     values = np.random.default_rng(2).normal(size=(60, 1))

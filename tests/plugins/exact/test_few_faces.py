@@ -124,6 +124,7 @@ def test_without_common_planes_neighbours_meet_at_an_angle(monkeypatch):
     assert good.angle.max() > 1.5 * before
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("suffix", [".step", ".iges"])
 @pytest.mark.parametrize("name", ["plate_genus2_coarse.off", "torus.off", "klein_bottle.off", "cube.off"])
 def test_open_cascade_reads_a_closed_shape_of_the_same_volume(name, suffix, tmp_path):

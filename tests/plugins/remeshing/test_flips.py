@@ -53,6 +53,7 @@ def normal(points: np.ndarray, a: int, b: int, c: int) -> np.ndarray:
     return np.cross(points[b] - points[a], points[c] - points[a])
 
 
+@pytest.mark.long
 @given(st.integers(0, 10_000))
 def test_no_flip_is_left_that_makes_a_least_angle_larger(seed):
     points, hull = on_a_sphere(seed)

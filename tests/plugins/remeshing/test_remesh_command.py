@@ -42,6 +42,7 @@ def test_a_saved_surface_is_meshed_without_a_fit(orbiframe, tmp_path):
     assert "finished surface" in ran.err
 
 
+@pytest.mark.long
 def test_every_component_has_its_share_of_the_vertices(orbiframe, tmp_path):
     registry = Registry.discover()
     cube = read(CUBE, registry)
