@@ -68,6 +68,7 @@ def test_poisson_with_the_order_that_the_degree_promises():
     assert np.log2(coarse / fine) == pytest.approx(3, abs=0.3)
 
 
+@pytest.mark.long
 def test_poisson_to_five_digits():
     assert error_of_poisson("ps6", 1200) < 1e-4
 
