@@ -14,7 +14,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from lifted_sites import group_of
 from scipy.spatial import Delaunay
 
-from orbiframe.delaunay import delaunay, polygon_fan as polygon_triangulation, uniform_points
+from orbiframe.delaunay import delaunay, polygon_triangulation, uniform_points
 
 SURFACES = {"sphere": "aA", "torus": "abAB", "Klein bottle": "abaB", "genus 2": "abcdABCD", "3 crosscaps": "aabbcc"}
 

@@ -12,6 +12,7 @@ from scipy.interpolate import CloughTocher2DInterpolator, NdBSpline
 
 from orbiframe import Points, Registry, Triangulation
 from orbiframe.delaunay import domain_for
+from orbiframe.functions.lifted_centres import LiftedCentres
 from orbiframe.functions.orbit_sum import reaching_pairs
 from orbiframe.triangulations import GeodesicTriangulation
 
@@ -119,7 +120,9 @@ def show_pairs(registry: Registry, made: Triangulation, points: Points) -> None:
     basis = registry.load("basis", "gaussian")(made.orbifold, made, size=1000)
 
     def search() -> int:
-        return sum(len(p.column) for p in reaching_pairs(made.orbifold, basis.centres, basis.support, points))
+        return sum(
+            len(p.column) for p in reaching_pairs(LiftedCentres(made.orbifold, basis.centres, basis.support), points)
+        )
 
     pairs, spent = search(), least([search])[0]
     rate, share = pairs / spent / 1e6, pairs / _COUNT
