@@ -22,7 +22,7 @@ from signed_faces import WORDS, fan, wandering
 from orbiframe import Polyhedron, Triangulation
 from orbiframe.components.registry import Registry
 from orbiframe.errors import OrbiframeError
-from orbiframe.fitting import pipeline
+from orbiframe.fitting.mapping import PARAMETRIZER
 from orbiframe.meshes.bisection import bisected, edge_length_for
 from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.meshes.flat_flips import flat_flips
@@ -94,7 +94,7 @@ def refined(mesh: Polyhedron) -> Polyhedron:
 def mapped(mesh: Polyhedron) -> Triangulation:
     """The map of a mesh by the component that a fit would take."""
     geometry = REGISTRY.geometry(surface_type(mesh).euler_characteristic)
-    return REGISTRY.load("parametrizer", pipeline.PARAMETRIZER[geometry.name])(mesh, geometry, None)
+    return REGISTRY.load("parametrizer", PARAMETRIZER[geometry.name])(mesh, geometry, None)
 
 
 def row(mesh: Polyhedron, plain: bool) -> str:
