@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -55,6 +57,15 @@ def test_commands_run_in_a_folder_that_goes(warmed, tmp_path, monkeypatch):
 
 def test_quiet(warmed):
     assert warmed("info torus.off", quiet=True) == (0, "", "")
+
+
+def test_what_commands_say_of_the_small_meshes_is_not_repeated(warmed, monkeypatch):
+    def run(*_: object) -> int:
+        warnings.warn("the mesh has sharp edges", stacklevel=2)
+        return 0
+
+    monkeypatch.setattr("orbiframe.cli.main.parsed", lambda *_: SimpleNamespace(run=run))
+    assert warmed("curvature torus.off -o torus.csv", quiet=True) == (0, "", "")
 
 
 def test_a_command_that_fails_is_named_and_the_others_run(warmed):
