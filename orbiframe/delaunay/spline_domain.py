@@ -70,15 +70,20 @@ def domain_for(
     triangulation: Triangulation | GeodesicTriangulation,
     size: int,
     unknowns: tuple[int, int, int],
+    *,
+    creases: bool = False,
 ) -> GeodesicTriangulation:
     """The domain for about `size` functions, so many for each vertex, edge and triangle as `unknowns` says.
 
     A geodesic triangulation is taken as it is. From the map of a mesh a domain is made with V vertices, where V
     follows from E = 3 (V - chi) and F = 2 (V - chi); in S^2 and H^2 with more vertices, hence functions, if need be,
-    see `fewest_vertices`. Raises FitError for a triangulation of another orbifold.
+    see `fewest_vertices`. creases: whether the functions keep creases. Raises FitError for a triangulation of another
+    orbifold, and for one with creases where they are not kept.
     """
     if triangulation.orbifold is not orbifold:
         raise FitError("the triangulation belongs to another orbifold than the functions; pass triangulation.orbifold")
+    if triangulation.crease is not None and not creases:
+        raise FitError("these functions are smooth everywhere and keep no creases; take basis.name = 'ps2' or another")
     if isinstance(triangulation, GeodesicTriangulation):
         return triangulation
     at_vertex, on_edge, in_face = unknowns

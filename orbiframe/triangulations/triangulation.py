@@ -17,6 +17,7 @@ from orbiframe.orbifolds.orbifold import Orbifold
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +39,7 @@ class Triangulation:
     group: str = "given"
     weights: str = "none"
     density: Floats | None = None
+    crease: Bools | None = None
 
     @cached_property
     def corner_transitions(self) -> Ints:
