@@ -6,6 +6,7 @@ from .basis import (
     PiecewiseBasis as PiecewiseBasis,
     lifted as lifted,
 )
+from .crease_samples import Sides as Sides, crease_samples as crease_samples
 from .feet import around as around, foot_points as foot_points, foot_step as foot_step, moved as moved
 from .fitter import Fitter as Fitter, ValidatedFit as ValidatedFit, ValidatedFitter as ValidatedFitter
 from .jet_quotient import divide_jets as divide_jets

@@ -1,0 +1,140 @@
+"""Samples of a mesh with creases: of every vertex on a crease one for each side of it, with the normals of facets."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe.functions.samples import Samples, places
+from orbiframe.functions.smooth_samples import at_samples, lengths, sagittas
+from orbiframe.meshes.bisection import Bisection
+from orbiframe.meshes.crease_sides import corner_sides, side_normals
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.sizes import vector_areas
+from orbiframe.orbifolds.atlas import Points
+from orbiframe.triangulations.triangulation import Triangulation
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+# How far inside of a triangle the side of a corner is told, as a share of the triangle.
+_INSIDE = 1e-7
+# A facet whose arc is higher than this share of the distance of functions stands for something curved.
+_SAGITTA = 0.002
+
+
+class Sides(NamedTuple):
+    """The sides of the vertices of a mesh with creases: the side of each corner (H,), and of each side its vertex (S,),
+    whether that lies on a crease (S,), and a point of X/H just inside of the side.
+    """
+
+    corner: Ints
+    vertex: Ints
+    parted: Bools
+    points: Points
+
+    @classmethod
+    def of(cls, triangulation: Triangulation) -> Sides:
+        """The sides of the vertices of a map with creases."""
+        mesh, crease = triangulation.polyhedron, triangulation.crease
+        assert crease is not None
+        side = corner_sides(mesh, crease)
+        first = np.unique(side, return_index=True)[1]
+        vertex = mesh.tail[first]
+        on_crease = np.zeros(len(mesh.vertices), dtype=np.bool_)
+        on_crease[mesh.tail[crease]] = on_crease[mesh.head[crease]] = True
+        barycentric = np.full((len(first), 3), _INSIDE / 2)
+        barycentric[np.arange(len(first)), first % 3] = 1 - _INSIDE
+        inside = triangulation.locate(first // 3, barycentric)
+        parted = on_crease[vertex]
+        patch = np.where(parted, inside.patch, triangulation.patch[vertex])
+        x = np.where(parted[:, None], inside.x, triangulation.points[vertex])
+        return cls(side, vertex, parted, Points(patch, x))
+
+
+def crease_samples(triangulation: Triangulation, refinement: Bisection, spacing: float, *, curved: str) -> Samples:
+    """The sides of vertices and the face centroids of a mesh with creases, weighted by area in space.
+
+    Facets that no edge beside the creases bends by more than 3 degrees are flat: their samples have normals and keep
+    their parameters. Those of others slide along the surface, but for those on creases. curved: which facets stand for
+    something curved: "none", "all", or "bent", those that are bent. Of curved facets the vertices are the truth, and
+    other samples count the less, the higher the arc over the facet is against the spacing of the functions.
+    """
+    flat, facets = refinement.polyhedron, refinement.facets
+    sides, everywhere = Sides.of(triangulation), places(triangulation)
+    facet_area = np.linalg.norm(vector_areas(facets), axis=1)
+    height = sagittas(facets, facet_area, crease_of_facets(triangulation, refinement))
+    fine_height = at_samples(triangulation, refinement, height)[len(flat.vertices) :]
+    area = np.linalg.norm(vector_areas(flat), axis=1)
+    share = _shares(fine_height / (_SAGITTA * spacing), curved)
+    weights = np.concatenate([_total(sides, area * share / 12), 0.75 * area * share])
+    weights[: len(sides.vertex)] += _at_given(sides, facets, area, share < 1)
+    bent = np.concatenate([_total(sides, np.where(fine_height > 0, area, 0)) > 0, fine_height > 0])
+    bent |= curved == "all"
+    normals = np.concatenate([side_normals(flat, sides.corner), _unit(vector_areas(flat))])
+    normals[bent] = np.nan
+    chosen = np.concatenate([sides.vertex, len(flat.vertices) + np.arange(flat.face_count)])
+    values = np.concatenate([flat.vertices[sides.vertex], flat.vertices[flat.triangles].mean(axis=1)])
+    long = np.maximum(lengths(triangulation, refinement, facet_area)[chosen], spacing)
+    centroids = slice(len(flat.vertices), None)
+    points = Points(
+        np.concatenate([sides.points.patch, everywhere.points.patch[centroids]]),
+        np.concatenate([sides.points.x, everywhere.points.x[centroids]]),
+    )
+    samples = Samples(
+        points,
+        values,
+        weights,
+        everywhere.stretch[chosen],
+        np.concatenate([_total(sides, area / 12), 0.75 * area]),
+        np.where(bent, long, spacing),
+        2,
+        normals=normals,
+        still=~bent | np.concatenate([sides.parted, np.zeros(flat.face_count, dtype=np.bool_)]),
+    )
+    return samples.take(np.flatnonzero((samples.weights > 0) | (samples.shares > 0)))
+
+
+def _shares(height: Floats, curved: str) -> Floats:
+    """What is left of the weight of triangles, (F,), by the heights of the arcs over their facets."""
+    if curved == "bent":
+        return np.asarray(1 / (1 + height**2))
+    return np.full(len(height), 0.0 if curved == "all" else 1.0)
+
+
+def crease_of_facets(triangulation: Triangulation, refinement: Bisection) -> Bools:
+    """The halfedges of the facets that are creases, (H,), from those of the refined mesh."""
+    assert triangulation.crease is not None
+    facet, corner = np.divmod(np.arange(len(refinement.facets.tail)), 3)
+    barycentric = np.zeros((len(facet), 3))
+    barycentric[np.arange(len(facet)), corner] = 0.4375 + 1 / 64 + 1 / 1024
+    barycentric[np.arange(len(facet)), (corner + 1) % 3] = 1 - barycentric.max(axis=1)
+    fine, weights = refinement.locate_in_facets(facet, barycentric)
+    return np.asarray(triangulation.crease[3 * fine + (np.abs(weights).argmin(axis=1) + 1) % 3])
+
+
+def _at_given(sides: Sides, facets: Polyhedron, area: Floats, curved: Bools) -> Floats:
+    """What the sides of given vertices count for beside curved facets, (S,): a third of the area of those about."""
+    given = sides.vertex < len(facets.vertices)
+    around = np.bincount(
+        facets.tail, weights=np.linalg.norm(vector_areas(facets), axis=1)[facets.face] / 3, minlength=len(facets.vertices)
+    )
+    weight, chosen = np.zeros(len(sides.vertex)), np.flatnonzero(given)
+    share = _total(sides, np.where(curved, area, 0.0))
+    whole = np.bincount(sides.vertex, weights=_total(sides, area), minlength=int(sides.vertex.max()) + 1)
+    vertex = sides.vertex[chosen]
+    weight[chosen] = around[vertex] * share[chosen] / np.maximum(whole[vertex], np.finfo(float).tiny)
+    return weight
+
+
+def _total(sides: Sides, of_face: Floats) -> Floats:
+    """The sum of a quantity of triangles over those on each side, (S,)."""
+    return np.asarray(np.bincount(sides.corner, weights=np.repeat(of_face, 3)), dtype=float)
+
+
+def _unit(vectors: Floats) -> Floats:
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.asarray(vectors / np.maximum(length, np.finfo(float).tiny))
