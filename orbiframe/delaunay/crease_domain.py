@@ -8,6 +8,7 @@ domain exactly, and no triangle of the mesh lies on both sides.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -31,6 +32,8 @@ Bools = NDArray[np.bool_]
 _ROUNDS = 12
 # No site between creases is nearer to one than this share of the spacing.
 _APART = 0.6
+# Between two sites a crease turns by no more than about this.
+_BEND = np.radians(45)
 # How far, in barycentric coordinates, the middle of a piece of a crease may be from an edge.
 _ON_EDGE = 1e-7
 # Extra unknowns of a vertex on a crease, and extra open edges there: one of the crease, two hairs.
@@ -185,7 +188,7 @@ class _Placing:
             way *= _scales(mesh.edge_lengths, length, mesh.tail)[chain.vertices[:-1]]
             reached = np.concatenate([[0.0], np.cumsum(way)])
             least = 3 if chain.vertices[0] == chain.vertices[-1] else 1
-            count = max(least, round(reached[-1] / spacing))
+            count = max(least, round(reached[-1] / spacing), math.ceil(_turning(mesh.vertices[chain.vertices]) / _BEND))
             wanted = np.arange(count + 1) * reached[-1] / count
             place = np.unique(np.abs(reached[:, None] - wanted).argmin(axis=0))
             found.append(chain.vertices[place])
@@ -202,6 +205,14 @@ class _Placing:
         hub = _with_hub(graph, rim, (1 - _APART) * spacing)
         chosen = farthest_points(hub, count + 1, first=len(mesh.vertices)).chosen[1:]
         return chosen[forest.distance[chosen] >= _APART * spacing]
+
+
+def _turning(x: Floats) -> float:
+    """The sum of the angles by which a curve (n, 3) turns at its inner vertices."""
+    way = np.diff(x, axis=0)
+    way /= np.maximum(np.linalg.norm(way, axis=1), np.finfo(float).tiny)[:, None]
+    turn = 2 * np.arcsin(np.minimum(np.linalg.norm(np.diff(way, axis=0), axis=1) / 2, 1.0))
+    return float(turn.sum())
 
 
 def _scales(edges: Floats, length: Floats, tail: Ints) -> Floats:

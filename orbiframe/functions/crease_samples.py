@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.functions.samples import Samples, places
-from orbiframe.functions.smooth_samples import at_samples, lengths, sagittas
+from orbiframe.functions.smooth_samples import lengths, sagittas
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.crease_sides import corner_sides, side_normals
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -24,6 +24,8 @@ Bools = NDArray[np.bool_]
 _INSIDE = 1e-7
 # A facet whose arc is higher than this share of the distance of functions stands for something curved.
 _SAGITTA = 0.002
+# Barycentric coordinates below this are those of points of an edge.
+_ON_EDGE = 1e-9
 
 
 class Sides(NamedTuple):
@@ -61,24 +63,30 @@ def crease_samples(triangulation: Triangulation, refinement: Bisection, spacing:
     Facets that no edge beside the creases bends by more than 3 degrees are flat: their samples have normals and keep
     their parameters. Those of others slide along the surface, but for those on creases. curved: which facets stand for
     something curved: "none", "all", or "bent", those that are bent. Of curved facets the vertices are the truth, and
-    other samples count the less, the higher the arc over the facet is against the spacing of the functions.
+    edges that do not bend, as those along a cylinder; other samples count the less, the higher the arc over them is
+    against the spacing of the functions.
     """
     flat, facets = refinement.polyhedron, refinement.facets
     sides, everywhere = Sides.of(triangulation), places(triangulation)
-    facet_area = np.linalg.norm(vector_areas(facets), axis=1)
-    height = sagittas(facets, facet_area, crease_of_facets(triangulation, refinement))
-    fine_height = at_samples(triangulation, refinement, height)[len(flat.vertices) :]
+    crease = crease_of_facets(triangulation, refinement)
+    height = sagittas(facets, np.linalg.norm(vector_areas(facets), axis=1), crease)
+    at_corner, fine_height = _arcs(refinement, crease, height)
+    at_side = np.zeros(len(sides.vertex))
+    np.maximum.at(at_side, sides.corner, at_corner.ravel())
     area = np.linalg.norm(vector_areas(flat), axis=1)
-    share = _shares(fine_height / (_SAGITTA * spacing), curved)
-    weights = np.concatenate([_total(sides, area * share / 12), 0.75 * area * share])
-    weights[: len(sides.vertex)] += _at_given(sides, facets, area, share < 1)
     bent = np.concatenate([_total(sides, np.where(fine_height > 0, area, 0)) > 0, fine_height > 0])
+    share = _shares(np.concatenate([at_side, fine_height]) / (_SAGITTA * spacing), curved)
+    plain = np.concatenate([_total(sides, area / 12), 0.75 * area])
+    weights = share * plain
+    if curved == "bent":
+        weights[: len(sides.vertex)] *= np.where(bent[: len(sides.vertex)], 4.0, 1.0)
+    if curved != "none":
+        weights[: len(sides.vertex)] += _at_given(sides, facets, area, (fine_height > 0) | (curved == "all"))
     bent |= curved == "all"
     normals = np.concatenate([side_normals(flat, sides.corner), _unit(vector_areas(flat))])
     normals[bent] = np.nan
     chosen = np.concatenate([sides.vertex, len(flat.vertices) + np.arange(flat.face_count)])
-    values = np.concatenate([flat.vertices[sides.vertex], flat.vertices[flat.triangles].mean(axis=1)])
-    long = np.maximum(lengths(triangulation, refinement, facet_area)[chosen], spacing)
+    long = np.maximum(_lengths_of_facets(triangulation, refinement)[chosen], spacing)
     centroids = slice(len(flat.vertices), None)
     points = Points(
         np.concatenate([sides.points.patch, everywhere.points.patch[centroids]]),
@@ -86,10 +94,10 @@ def crease_samples(triangulation: Triangulation, refinement: Bisection, spacing:
     )
     samples = Samples(
         points,
-        values,
+        np.concatenate([flat.vertices[sides.vertex], flat.vertices[flat.triangles].mean(axis=1)]),
         weights,
         everywhere.stretch[chosen],
-        np.concatenate([_total(sides, area / 12), 0.75 * area]),
+        plain,
         np.where(bent, long, spacing),
         2,
         normals=normals,
@@ -98,8 +106,35 @@ def crease_samples(triangulation: Triangulation, refinement: Bisection, spacing:
     return samples.take(np.flatnonzero((samples.weights > 0) | (samples.shares > 0)))
 
 
+def _lengths_of_facets(triangulation: Triangulation, refinement: Bisection) -> Floats:
+    return lengths(triangulation, refinement, np.linalg.norm(vector_areas(refinement.facets), axis=1))
+
+
+def _arcs(refinement: Bisection, crease: Bools, height: Floats) -> tuple[Floats, Floats]:
+    """The heights of the arcs of what facets stand for, over the corners of the fine triangles (G, 3), and over these.
+
+    Over vertices of facets there is none; over an edge it is that of the arc with the normals of the facets at its ends.
+    """
+    facets = refinement.facets
+    side = corner_sides(facets, crease)
+    normal = side_normals(facets, side, facets.vertices)[side]
+    way = facets.vertices[facets.head] - facets.vertices[facets.tail]
+    other = normal[facets.next] * np.where(np.einsum("hi,hi->h", normal, normal[facets.next]) < 0, -1, 1)[:, None]
+    over_edge = np.abs(np.einsum("hi,hi->h", other - normal, way)).reshape(-1, 3) / 8
+    own = np.concatenate([np.tile(np.eye(3), (len(height), 1, 1)), np.zeros((len(height), 3, 1))], axis=2)
+    own[:, :, 3] = np.arange(len(height))[:, None]
+    fine = refinement.spread(own)
+    facet = fine[:, 0, 3].round().astype(np.intp)
+    near = fine[:, :, :3] < _ON_EDGE
+    opposite = (near.argmax(axis=2) + 1) % 3
+    zeros = near.sum(axis=2)
+    edge = over_edge[facet[:, None], opposite]
+    found = np.where(zeros == 0, height[facet][:, None], np.where(zeros == 1, np.minimum(edge, height[facet][:, None]), 0))
+    return np.asarray(found), height[facet]
+
+
 def _shares(height: Floats, curved: str) -> Floats:
-    """What is left of the weight of triangles, (F,), by the heights of the arcs over their facets."""
+    """What is left of the weights of samples by the heights of the arcs over them."""
     if curved == "bent":
         return np.asarray(1 / (1 + height**2))
     return np.full(len(height), 0.0 if curved == "all" else 1.0)

@@ -28,11 +28,24 @@ def corner_sides(mesh: Polyhedron, crease: Bools) -> Ints:
     return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
 
 
-def side_normals(mesh: Polyhedron, side: Ints) -> Floats:
-    """The normal of every side up to its sign, (S, 3): the direction nearest to the normals of its faces, by area."""
+def side_normals(mesh: Polyhedron, side: Ints, angles_of: Floats | None = None) -> Floats:
+    """The normal of every side of a triangle mesh up to its sign, (S, 3): the direction nearest to those of its faces.
+
+    Faces count by their area, or by their angle at the vertex, where the vertices (V, 3) are given again: as a fan of
+    triangles or as one polygon alike.
+    """
     vectors = vector_areas(mesh)[mesh.face]
     size = np.linalg.norm(vectors, axis=1)
     unit = vectors / np.maximum(size, np.finfo(float).tiny)[:, None]
+    if angles_of is not None:
+        size = _angles(mesh, angles_of)
     moment = np.zeros((int(side.max()) + 1, 3, 3))
     np.add.at(moment, side, (size[:, None] * unit)[:, :, None] * unit[:, None, :])
     return np.asarray(np.linalg.eigh(moment)[1][:, :, 2])
+
+
+def _angles(mesh: Polyhedron, x: Floats) -> Floats:
+    """The angles of triangles at their corners, (H,)."""
+    ahead, back = x[mesh.head] - x[mesh.tail], x[mesh.head[mesh.next]] - x[mesh.tail]
+    across = np.linalg.norm(np.cross(ahead, back), axis=1)
+    return np.asarray(np.arctan2(across, np.einsum("hi,hi->h", ahead, back)))
