@@ -22,6 +22,8 @@ _OF_GIRTH = 0.5
 # A facet whose arc is higher than this share of the distance of functions stands for something curved.
 _SAGITTA = 0.002
 _FLAT = np.radians(3)
+# A triangle so many times as wide as its neighbour does not belong to the same arc.
+_WIDE = 3.0
 
 
 def vertex_samples(triangulation: Triangulation, refinement: Bisection, noise: float | None = None) -> Samples:
@@ -68,11 +70,14 @@ def _fair(samples: Samples) -> Samples:
 def sagittas(mesh: Polyhedron, area: Floats, crease: Bools | None = None) -> Floats:
     """For each triangle the largest of angle times height / 8 over its edges that are bent but not sharp.
 
-    crease: (H,), which edges are sharp; by default those that bend by more than 40 degrees.
+    crease: (H,), which edges are sharp, by default those that bend by more than 40 degrees. Where creases are known, a
+    triangle that is much wider than its neighbour is the plane in which a round ends, and no arc.
     """
     angle = bending(mesh).angle
     curved = np.where((angle > _FLAT) & ~(angle >= SHARP if crease is None else crease), angle, 0.0)
     height = 2 * area[mesh.face] / np.maximum(mesh.edge_lengths, np.finfo(float).tiny)
+    if crease is not None:
+        curved[height > _WIDE * height[mesh.twin]] = 0.0
     return np.asarray((curved * height / 8).reshape(-1, 3).max(axis=1))
 
 
