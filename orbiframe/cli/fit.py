@@ -40,6 +40,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--map", metavar="NAME", help="the map to X/H, such as equivariant (map.method)")
     add("--basis", metavar="NAME", help="the functions, such as ps6 or gaussian (basis.name)")
     add("--data", metavar="MEANS", help="what the mesh means: smooth, semi-smooth or facets; default auto (data.means)")
+    add("--creases", metavar="ANGLE", type=float, help="edges that bend by ANGLE degrees or more stay sharp (data.creases)")
     add("--fast", action="store_true", help="one linear fit on one map (fitter.name=least-squares, data.lift=false)")
     add("--shape", metavar="NAME", help="makes faces regular in X/H, such as regular-faces (shape.method)")
     add(
@@ -196,6 +197,7 @@ def overrides(args: argparse.Namespace) -> list[str]:
         "output.tolerance": args.tolerance,
         "output.max_error": args.max_error,
         "data.means": args.data,
+        "data.creases": args.creases,
         "output.refine": args.refine,
     }
     fast = ["fitter.name=least-squares", "data.lift=false"] if args.fast else []

@@ -63,6 +63,26 @@ def crease_triangulation(triangulation: Triangulation) -> GeodesicTriangulation:
     return domain
 
 
+def off_geodesics(triangulation: Triangulation) -> float:
+    """How far vertices on creases are from the geodesic between the sites about them: the largest, per its length.
+
+    Infinite for a crease that no site interrupts.
+    """
+    geometry, worst = triangulation.orbifold.geometry, 0.0
+    assert triangulation.crease is not None
+    stop = np.zeros(len(triangulation.points), dtype=np.bool_)
+    stop[triangulation.sites] = True
+    for piece in CreaseGraph.of(triangulation.polyhedron, triangulation.crease, triangulation.sites).chains(triangulation):
+        if not stop[piece.vertices[[0, -1]]].all():
+            return np.inf
+        x = piece.lifted(triangulation)
+        plane = np.cross(x[0], x[-1])
+        size = np.sqrt(max(float((plane**2 * [geometry.curvature, 1, 1]).sum()), np.finfo(float).tiny))
+        length = float(geometry.distance(x[0], x[-1]))
+        worst = max(worst, float(np.abs(x @ plane).max() / size / max(length, np.finfo(float).tiny)))
+    return worst
+
+
 def _with_edges(
     triangulation: Triangulation, crease: Bools, sites: Ints
 ) -> tuple[GeodesicTriangulation, list[Chain], Ints]:

@@ -9,10 +9,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.errors import MapError
+from orbiframe.components.options import place_of
+from orbiframe.delaunay.crease_domain import creased
+from orbiframe.errors import ConfigError, MapError
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.stages import Stages
 from orbiframe.groups.marked_group import MarkedGroup
+from orbiframe.meshes.bending import bending, sharp_edges
 from orbiframe.meshes.bisection import Bisection, bisected, edge_length_for
 from orbiframe.meshes.flat_flips import FlatFlips, flat_flips
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -80,6 +83,25 @@ class Mapping:
             refinement = self.stages("refinement", bisected, self.triangles, longest, True, self.flips)
             self.maps[longest] = self._mapped(refinement, refinement.polyhedron)
         return self.maps[longest]
+
+    def creased(self, mapped: Mapped, size: int, unknowns: tuple[int, int, int]) -> Mapped:
+        """The map with creases where the mesh is sharp, for about `size` functions; see `data.creases`."""
+        found = creased(mapped.triangulation, self._sharp(mapped.refinement.polyhedron), size, unknowns)
+        unshaped = mapped.first.points is mapped.triangulation.points
+        return mapped._replace(first=found if unshaped else mapped.first, triangulation=found)
+
+    def _sharp(self, mesh: Polyhedron) -> NDArray[np.bool_]:
+        """The creases of the refined mesh. Raises ConfigError where there is none."""
+        degrees = self.config.data.creases
+        assert degrees is not None
+        found = sharp_edges(mesh, degrees)
+        if not found.any():
+            sharpest = float(np.degrees(bending(mesh).angle.max()))
+            raise ConfigError(
+                f"{place_of('data.creases', self.config.places)}no edge of the mesh bends by {degrees:g}° or more (the "
+                f"sharpest by {sharpest:.1f}°), so that there is no crease; take a smaller angle, or leave it out"
+            )
+        return found
 
     def of_lifted(self, mapped: Mapped, lifted: Polyhedron) -> Mapped:
         """The map of the refined mesh with its vertices moved; the one before, if those cannot be mapped."""

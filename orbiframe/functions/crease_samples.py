@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,7 +57,9 @@ class Sides(NamedTuple):
         return cls(side, vertex, parted, Points(patch, x))
 
 
-def crease_samples(triangulation: Triangulation, refinement: Bisection, spacing: float, *, curved: str) -> Samples:
+def crease_samples(
+    triangulation: Triangulation, refinement: Bisection, spacing: float, *, curved: Literal["none", "bent", "all"]
+) -> Samples:
     """The sides of vertices and the face centroids of a mesh with creases, weighted by area in space.
 
     Facets that no edge beside the creases bends by more than 3 degrees are flat: their samples have normals and keep

@@ -26,7 +26,7 @@ class CloughTocher(ElementBasis):
     triangulation: the map of a mesh, on which a domain for about `size` functions is made, or a domain itself.
     """
 
-    keeps_creases = True
+    crease_unknowns = 3, 1, 0
 
     def __init__(
         self, orbifold: Orbifold, triangulation: Triangulation | GeodesicTriangulation, *, size: int = 1000

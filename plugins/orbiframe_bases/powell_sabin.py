@@ -52,7 +52,7 @@ class PowellSabin(ElementBasis):
     ) -> None:
         at_vertex = coefficient_count(self.jet_order)
         counts = at_vertex, self.on_edge, self.in_face
-        domain = domain_for(orbifold, triangulation, size, counts, creases=self.keeps_creases)
+        domain = domain_for(orbifold, triangulation, size, counts, creases=self.crease_unknowns is not None)
         split = PowellSabinSplit(domain)
         self.vertex_triangles = self._triangles(split)
         sectors = Sectors(domain) if domain.crease is not None else None
@@ -108,7 +108,7 @@ class PowellSabin2(PowellSabin):
     """
 
     polynomial_degree, jet_order, continuity = 2, 1, 1
-    keeps_creases = True
+    crease_unknowns = 3, 0, 0
 
     def _triangles(self, split: PowellSabinSplit) -> Floats:
         return enclosing_triangles(split.domain, split.around)
