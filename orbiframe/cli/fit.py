@@ -219,6 +219,8 @@ def _few_faces(args: argparse.Namespace, config: Config, registry: Registry) -> 
         raise UsageError(f"{args.output}: --exact is for files that hold exact surfaces, such as part.step")
     if not makes or args.exact or (_piecewise(config, registry) and not asked):
         return None
+    if config.data.creases is not None:
+        raise UsageError("--faces and --export-tolerance round creases off; write the exact patches: leave them out")
     if args.faces is not None and not 1 <= args.faces <= _MOST_FACES:
         raise UsageError(f"--faces {args.faces}: give 1 to {_MOST_FACES}")
     tolerance = 1e-4 if args.export_tolerance is None else args.export_tolerance

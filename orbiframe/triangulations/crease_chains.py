@@ -18,6 +18,8 @@ Bools = NDArray[np.bool_]
 
 # Where a crease turns by more in space, it has a corner.
 _TURN = np.radians(20)
+# Barycentric coordinates below this are those of points of an edge.
+_ON_EDGE = 1e-9
 
 
 class Chain(NamedTuple):
@@ -83,6 +85,18 @@ class CreaseGraph(NamedTuple):
         here = np.arange(graph.start[vertex], graph.start[vertex + 1])
         same = (graph.halfedge[here] == graph.halfedge[link]) & (graph.backward[here] != graph.backward[link])
         return int(here[same][0])
+
+
+def on_crease(triangulation: Triangulation, face: Ints, barycentric: Floats) -> Bools:
+    """Whether points at barycentric coordinates (n, 3) in triangles (n,) of the mesh lie on creases, (n,)."""
+    assert triangulation.crease is not None
+    mesh, crease = triangulation.polyhedron, triangulation.crease
+    vertex = np.zeros(len(mesh.vertices), dtype=np.bool_)
+    vertex[mesh.tail[crease]] = vertex[mesh.head[crease]] = True
+    zero = barycentric < _ON_EDGE
+    on_edge = (np.roll(zero, 1, axis=1) & crease.reshape(-1, 3)[face]).any(axis=1)
+    at_vertex = vertex[mesh.triangles[face, barycentric.argmax(axis=1)]] & (zero.sum(axis=1) == 2)
+    return np.asarray(on_edge | at_vertex)
 
 
 def _corners(mesh: Polyhedron, graph: Graph, links: Bools) -> Ints:
