@@ -1,7 +1,8 @@
 """Crease domain: a triangulation of X/H in which creases of a mesh are chains of edges, and a map that follows them.
 
 Sites are spread over the creases and over the faces between them. A piece of a crease between two sites is to be an
-edge of their Delaunay triangulation; where it is none, its middle becomes a site too. Then the vertices of the mesh on
+edge of their Delaunay triangulation; where it is none, its middle becomes a site too, and where it has no middle, edges
+are flipped. Then the vertices of the mesh on
 the piece are moved onto the geodesic between its ends, which they are near, so that the crease runs along edges of the
 domain exactly, and no triangle of the mesh lies on both sides.
 """
@@ -14,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.delaunay.forced_edges import with_edge
 from orbiframe.delaunay.site_triangulation import delaunay_of_vertices
 from orbiframe.errors import MapError
 from orbiframe.meshes.edge_paths import Graph, dijkstra_forest, edge_graph, farthest_points
@@ -29,7 +31,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
-_ROUNDS = 12
+# Pieces are halved so often, then made edges by flips; those without a middle are made edges so at once.
+_ROUNDS, _LAST_ROUNDS = 10, 8
 # No site between creases is nearer to one than this share of the spacing.
 _APART = 0.6
 # Between two sites a crease turns by no more than about this.
@@ -57,7 +60,7 @@ def crease_triangulation(triangulation: Triangulation) -> GeodesicTriangulation:
     Raises MapError where a piece of a crease between two sites is no edge.
     """
     assert triangulation.crease is not None and triangulation.sites is not None
-    domain, pieces, edges = _with_edges(triangulation, triangulation.crease, triangulation.sites)
+    domain, pieces, edges = _with_edges(triangulation, triangulation.crease, triangulation.sites, np.inf)
     if (edges < 0).any():
         raise MapError(_no_place(triangulation, pieces[int(np.argmin(edges))]))
     return domain
@@ -84,9 +87,13 @@ def off_geodesics(triangulation: Triangulation) -> float:
 
 
 def _with_edges(
-    triangulation: Triangulation, crease: Bools, sites: Ints
+    triangulation: Triangulation, crease: Bools, sites: Ints, forced: float
 ) -> tuple[GeodesicTriangulation, list[Chain], Ints]:
-    """The domain with its creases, the pieces of creases between sites, and the halfedge of each, -1 for none."""
+    """The domain with its creases, the pieces of creases between sites, and the halfedge of each, -1 for none.
+
+    Pieces that are no edges of the Delaunay triangulation are made edges by flips, if they have at most `forced`
+    vertices.
+    """
     start = GeodesicTriangulation.of_map(triangulation)
     number = np.empty(len(triangulation.polyhedron.vertices), dtype=np.intp)
     number[triangulation.polyhedron.triangles] = start.vertex
@@ -96,6 +103,13 @@ def _with_edges(
     vertex[sites] = found.vertex
     pieces = list(CreaseGraph.of(triangulation.polyhedron, crease, sites).chains(triangulation))
     edges = _edges_under(domain, triangulation, pieces, vertex)
+    missing = [piece for piece, edge in zip(pieces, edges, strict=True) if edge < 0 and len(piece.vertices) <= forced]
+    for piece in missing:
+        x, patch = piece.lifted(triangulation), int(triangulation.patch[piece.vertices[0]])
+        if (again := with_edge(domain, patch, x[0], x[-1])) is not None:
+            domain, vertex[sites] = again.triangulation, again.vertex[vertex[sites]]
+    if missing:
+        edges = _edges_under(domain, triangulation, pieces, vertex)
     flags = np.zeros(3 * domain.face_count, dtype=np.bool_)
     flags[edges[edges >= 0]] = True
     return replace(domain, crease=flags | flags[domain.twin]), pieces, edges
@@ -142,8 +156,9 @@ class _Placing:
 
     def placed(self, size: int, unknowns: tuple[int, int, int]) -> Triangulation:
         sites = self._sites(size, unknowns)
-        for _ in range(_ROUNDS):
-            _, pieces, edges = _with_edges(self.triangulation, self.crease, sites)
+        for turn in range(_ROUNDS + _LAST_ROUNDS):
+            forced = 2 if turn < _ROUNDS else np.inf
+            _, pieces, edges = _with_edges(self.triangulation, self.crease, sites, forced)
             missing = [piece for piece, edge in zip(pieces, edges, strict=True) if edge < 0]
             if not missing:
                 moved = self._straightened(pieces)
