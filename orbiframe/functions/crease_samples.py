@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.delaunay.crease_domain import crease_triangulation
 from orbiframe.functions.samples import Samples, places
 from orbiframe.functions.smooth_samples import lengths, sagittas
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.crease_sides import corner_sides, side_normals
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
+from orbiframe.meshes.subdivision import grid_of
 from orbiframe.orbifolds.atlas import Points
+from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
+from orbiframe.triangulations.point_location import Locator
 from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
@@ -26,6 +30,8 @@ _INSIDE = 1e-7
 _SAGITTA = 0.002
 # Barycentric coordinates below this are those of points of an edge.
 _ON_EDGE = 1e-9
+# Triangles of the domain with fewer samples get as many more as the square of the density says.
+_FEW, _DENSITY = 16, 4
 
 
 class Sides(NamedTuple):
@@ -105,7 +111,56 @@ def crease_samples(
         normals=normals,
         still=~bent | np.concatenate([sides.parted, np.zeros(flat.face_count, dtype=np.bool_)]),
     )
+    samples = _joined(samples, _within_small(triangulation, refinement, samples, bent[len(sides.vertex) :], share, long))
     return samples.take(np.flatnonzero((samples.weights > 0) | (samples.shares > 0)))
+
+
+def _within_small(
+    triangulation: Triangulation, refinement: Bisection, samples: Samples, bent: Bools, share: Floats, long: Floats
+) -> Samples:
+    """More samples in the triangles of the domain that have few: beside corners these are no larger than those of the
+    mesh, and some function would reach no sample.
+    """
+    domain, flat = crease_triangulation(triangulation), refinement.polyhedron
+    count = np.bincount(Locator(domain).locate(samples.points).face, minlength=domain.face_count)
+    few = np.flatnonzero(count < _FEW)
+    grid = grid_of(_DENSITY).mean(axis=1)
+    x = domain.geometry.project(np.einsum("kc,fci->fki", grid, domain.corners[few]))
+    x = domain.geometry.settle(domain.geometry.act(domain.placement[few][:, None], x)).reshape(-1, 3)
+    points = Points(np.repeat(domain.patch[few], len(grid)), x)
+    fine = GeodesicTriangulation.of_map(triangulation)
+    location = Locator(fine).locate(points)
+    face, weights = np.empty(len(x), dtype=np.intp), np.empty((len(x), 3))
+    inside = np.linalg.solve(np.swapaxes(fine.corners[location.face], 1, 2), location.columns[:, :, :1])[..., 0]
+    face[location.order], weights[location.order] = location.face, inside / inside.sum(axis=1, keepdims=True)
+    corners = flat.vertices[flat.triangles[face]]
+    stretch = samples.stretch[-flat.face_count :][face]
+    area = np.repeat(domain.areas[few], len(grid)) / len(grid) / np.maximum(stretch, np.finfo(float).tiny)
+    normals = _unit(vector_areas(flat))[face]
+    normals[bent[face]] = np.nan
+    first = len(share) - flat.face_count
+    return Samples(
+        points,
+        np.einsum("nc,nci->ni", weights, corners),
+        area * share[first:][face],
+        stretch,
+        area,
+        long[first:][face],
+        samples.order,
+        normals=normals,
+        still=~bent[face],
+    )
+
+
+def _joined(a: Samples, b: Samples) -> Samples:
+    """The samples of both."""
+
+    def both(name: str) -> Any:
+        return np.concatenate([getattr(a, name), getattr(b, name)])
+
+    points = Points(np.concatenate([a.points.patch, b.points.patch]), np.concatenate([a.points.x, b.points.x]))
+    tables = (both(name) for name in ("values", "weights", "stretch", "area", "length"))
+    return Samples(points, *tables, a.order, normals=both("normals"), still=both("still"))
 
 
 def _lengths_of_facets(triangulation: Triangulation, refinement: Bisection) -> Floats:
