@@ -35,6 +35,10 @@ Bools = NDArray[np.bool_]
 _ROUNDS, _LAST_ROUNDS = 10, 8
 # No site between creases is nearer to one than this share of the spacing.
 _APART = 0.6
+# How fast the spacing grows away from creases with a smaller one.
+_SLOPE = 0.7
+# The spacing is found by so many trials, or as soon as the number of functions is as near as this.
+_TRIALS, _ENOUGH = 5, 0.08
 # Between two sites a crease turns by no more than about this.
 _BEND = np.radians(45)
 # How far, in barycentric coordinates, the middle of a piece of a crease may be from an edge.
@@ -197,49 +201,51 @@ class _Placing:
         return _in_patches(replace(flat, points=points))
 
     def _sites(self, size: int, unknowns: tuple[int, int, int]) -> Ints:
-        """Sites on the creases, then between them, as many as the functions ask for."""
+        """Sites on the creases, then between them, about as many as the functions ask for."""
         mesh = self.triangulation.polyhedron
         density = site_density(self.triangulation, self.grading)
         length = mesh.edge_lengths * (density[mesh.tail] + density[mesh.head]) / 2
-        graph = edge_graph(mesh, length)
-        area = np.linalg.norm(vector_areas(mesh), axis=1) @ (density[mesh.triangles].mean(axis=1) ** 2)
         at_vertex, on_edge, in_face = unknowns
-        each = at_vertex + 3 * on_edge + 2 * in_face
-        more = _EXTRA_AT_VERTEX + _EXTRA_EDGES * on_edge
-        along = length[self.crease & mesh.representative].sum()
-        # size h^2 = more along h + each area / (sqrt(3) / 2): how many functions sites at distance h bring.
-        spread = each * area / (np.sqrt(3) / 2)
-        spacing = float((more * along + np.sqrt((more * along) ** 2 + 4 * size * spread)) / (2 * size))
-        chosen = self._on_creases(length, spacing)
-        between = round((size - (each + more) * len(chosen)) / each)
-        return np.unique(np.concatenate([chosen, self._between(graph, between, spacing)]))
+        each, more = at_vertex + 3 * on_edge + 2 * in_face, _EXTRA_AT_VERTEX + _EXTRA_EDGES * on_edge
+        area = np.linalg.norm(vector_areas(mesh), axis=1) @ (density[mesh.triangles].mean(axis=1) ** 2)
+        spacing = float(np.sqrt(each * area / size))
+        for _ in range(_TRIALS):
+            on, between = self._spread(length, spacing)
+            asked = (each + more) * len(on) + each * len(between)
+            if abs(asked / size - 1) < _ENOUGH:
+                break
+            spacing *= float(np.clip(np.sqrt(asked / size), 0.5, 2.0))
+        return np.unique(np.concatenate([on, between]))
 
-    def _on_creases(self, length: Floats, spacing: float) -> Ints:
-        """The corners and ends of creases, and vertices between them at about this spacing."""
-        mesh, found = self.triangulation.polyhedron, []
-        graph = CreaseGraph.of(mesh, self.crease)
-        for chain in graph.chains(self.triangulation):
+    def _spread(self, length: Floats, spacing: float) -> tuple[Ints, Ints]:
+        """Sites on and between creases at this spacing, between them the nearer, the nearer those on creases are."""
+        mesh = self.triangulation.polyhedron
+        graph, rim = edge_graph(mesh, length), np.unique(mesh.tail[self.crease])
+        on, apart = self._on_creases(length, spacing)
+        reach = dijkstra_forest(_with_hub(graph, on, apart / _SLOPE), np.array([len(mesh.vertices)])).distance[:-1]
+        local = np.minimum(spacing, _SLOPE * reach)
+        scaled = edge_graph(mesh, length * (spacing / local[mesh.tail] + spacing / local[mesh.head]) / 2)
+        hub = _with_hub(scaled, rim, np.full(len(rim), (1 - _APART) * spacing))
+        chosen = farthest_points(hub, len(mesh.vertices), first=len(mesh.vertices), radius=spacing).chosen[1:]
+        return on, chosen
+
+    def _on_creases(self, length: Floats, spacing: float) -> tuple[Ints, Floats]:
+        """The corners and ends of creases, and vertices between them at about this spacing, and how far apart they are.
+
+        Nearer together on short curves and where a curve turns.
+        """
+        mesh, apart = self.triangulation.polyhedron, np.full(len(self.triangulation.points), np.inf)
+        scale = _scales(mesh.edge_lengths, length, mesh.tail)
+        for chain in CreaseGraph.of(mesh, self.crease).chains(self.triangulation):
             way = np.linalg.norm(np.diff(mesh.vertices[chain.vertices], axis=0), axis=1)
-            way *= _scales(mesh.edge_lengths, length, mesh.tail)[chain.vertices[:-1]]
-            reached = np.concatenate([[0.0], np.cumsum(way)])
+            reached = np.concatenate([[0.0], np.cumsum(way * scale[chain.vertices[:-1]])])
             least = 3 if chain.vertices[0] == chain.vertices[-1] else 1
             count = max(least, round(reached[-1] / spacing), math.ceil(_turning(mesh.vertices[chain.vertices]) / _BEND))
             wanted = np.arange(count + 1) * reached[-1] / count
-            place = np.unique(np.abs(reached[:, None] - wanted).argmin(axis=0))
-            found.append(chain.vertices[place])
-        return np.unique(np.concatenate(found))
-
-    def _between(self, graph: Graph, count: int, spacing: float) -> Ints:
-        """About so many vertices off the creases, each as far as can be from those before and from the creases."""
-        mesh = self.triangulation.polyhedron
-        rim = np.unique(mesh.tail[self.crease])
-        forest = dijkstra_forest(graph, rim)
-        far = np.flatnonzero(forest.distance >= _APART * spacing)
-        if count < 1 or not len(far):
-            return np.zeros(0, dtype=np.intp)
-        hub = _with_hub(graph, rim, (1 - _APART) * spacing)
-        chosen = farthest_points(hub, count + 1, first=len(mesh.vertices)).chosen[1:]
-        return chosen[forest.distance[chosen] >= _APART * spacing]
+            site = chain.vertices[np.unique(np.abs(reached[:, None] - wanted).argmin(axis=0))]
+            apart[site] = np.minimum(apart[site], reached[-1] / count)
+        on = np.flatnonzero(np.isfinite(apart))
+        return on, np.minimum(apart[on], spacing)
 
 
 def _turning(x: Floats) -> float:
@@ -256,12 +262,12 @@ def _scales(edges: Floats, length: Floats, tail: Ints) -> Floats:
     return np.bincount(tail, weights=length) / np.maximum(weight, np.finfo(float).tiny)
 
 
-def _with_hub(graph: Graph, rim: Ints, length: float) -> Graph:
-    """The graph with one more vertex, joined to all of a rim by links of one length."""
+def _with_hub(graph: Graph, rim: Ints, length: Floats) -> Graph:
+    """The graph with one more vertex, joined to all of a rim by links of some lengths."""
     count, degree = len(graph.start) - 1, np.diff(graph.start)
     owner = np.concatenate([np.repeat(np.arange(count), degree), rim, np.full(len(rim), count)])
     neighbour = np.concatenate([graph.neighbour, np.full(len(rim), count), rim])
-    lengths = np.concatenate([graph.length, np.full(2 * len(rim), length)])
+    lengths = np.concatenate([graph.length, length, length])
     order = np.argsort(owner, kind="stable")
     start = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=count + 1))]).astype(np.intp)
     none = np.zeros(len(owner), dtype=np.intp)
