@@ -47,8 +47,10 @@ _SCHEDULES = {
     2: (Schedule(1e-4, 1e-2, 1e-3), Schedule(1e-4, 5e-3, 1e-3)),
     3: (Schedule(1e-4, 1e-3, 0.0), Schedule(1e-6, 1e-4, 0.0)),
 }
-# Between creases flat facets are flat in any parametrization, so that very little fairness is enough.
-_CREASED = (Schedule(1e-5, 1e-3, 0.0), Schedule(1e-6, 1e-3, 0.0))
+# Between creases flat facets are flat in any parametrization, so that very little fairness is enough; beside curved ones
+# more damping and some pull keep parameters from gliding away.
+_FLAT = (Schedule(1e-5, 1e-3, 0.0), Schedule(1e-6, 1e-3, 0.0))
+_CURVED = (Schedule(1e-5, 1e-2, 1e-4), Schedule(1e-6, 1e-2, 1e-4))
 # How much a kink across a hair counts against a distance of what it would lift at the spacing of the functions.
 _KINK = 10.0
 
@@ -84,7 +86,9 @@ class Sliding(Fitter):
     def _schedules(self, basis: Basis, samples: Samples, fairing: float) -> tuple[Schedule, ...]:
         """Those of the order of the energy, or the fairing that is given or that noise asks for."""
         order = min(samples.order, 2 if basis.smoothness < 2 else 3)
-        schedules = _SCHEDULES[order] if samples.still is None else _CREASED
+        schedules = _SCHEDULES[order]
+        if samples.still is not None:
+            schedules = _FLAT if samples.still.all() else _CURVED
         if self.fairing is None and fairing <= FAIRING[order]:
             return schedules
         return tuple(schedule._replace(fairing=fairing) for schedule in schedules)
