@@ -21,6 +21,8 @@ _BEGINNING = 1e-4
 # Corners that agree to this, per the length of the geodesic, are its ends.
 _SAME = 1e-6
 _MOST_FLIPS = 2000
+# No triangle is made that is smaller, per the square of that length: the geodesic runs through a vertex there.
+_LEAST = 1e-9
 
 
 def with_edge(
@@ -41,7 +43,7 @@ def with_edge(
     if not own.min() < _SAME * length:
         return None
     triangles = arrays_of(triangulation)
-    if not _force(triangles, 3 * int(location.face[0]) + int(own.argmin()), tuple(q), _SAME * length):
+    if not _force(triangles, 3 * int(location.face[0]) + int(own.argmin()), tuple(q), _SAME * length, _LEAST * length**2):
         return None
     arrays = triangles.corners, triangles.twin, triangles.same, triangles.patch, triangles.placement
     found = polished(centred(triangulation.orbifold, *arrays))
@@ -56,7 +58,7 @@ def _near(a, b, tolerance):  # type: ignore[no-untyped-def]
 
 
 @compiled(arrays=False)
-def _force(triangles, slot, q, tolerance):  # type: ignore[no-untyped-def]
+def _force(triangles, slot, q, tolerance, least):  # type: ignore[no-untyped-def]
     """Flip until the geodesic from the corner `slot` to q, in the frame of its triangle, is an edge; whether it is."""
     k = triangles.curvature
     for _ in range(_MOST_FLIPS):
@@ -65,7 +67,7 @@ def _force(triangles, slot, q, tolerance):  # type: ignore[no-untyped-def]
         p = corner(triangles, slot)
         if _near(corner(triangles, after(slot)), q, tolerance) or _near(corner(triangles, before(slot)), q, tolerance):
             return True
-        e = _best_crossed(triangles, slot, p, q, tolerance)
+        e = _best_crossed(triangles, slot, p, q, tolerance, least)
         if e < 0:
             return False
         first = e // 3 == slot // 3
@@ -79,7 +81,7 @@ def _force(triangles, slot, q, tolerance):  # type: ignore[no-untyped-def]
 
 
 @compiled(arrays=False)
-def _best_crossed(triangles, slot, p, q, tolerance):  # type: ignore[no-untyped-def]
+def _best_crossed(triangles, slot, p, q, tolerance, least):  # type: ignore[no-untyped-def]
     """An edge that the geodesic crosses in a convex quadrilateral, one that crosses no more if flipped if there is one.
 
     -1 for none. The triangles on the way come into the frame of the first one.
@@ -92,7 +94,7 @@ def _best_crossed(triangles, slot, p, q, tolerance):  # type: ignore[no-untyped-
         a, b, c, d = corner(triangles, e), corner(triangles, t), corner(triangles, before(e)), corner(triangles, before(t))
         end = _near(d, q, tolerance)
         side = 0.0 if end else turn(k, p, q, d)
-        if turn(k, c, a, d) > 0 and turn(k, c, d, b) > 0:
+        if turn(k, c, a, d) > least and turn(k, c, d, b) > least:
             other = turn(k, p, q, c) if not _near(c, p, tolerance) else 0.0
             if side * other >= 0:
                 return e
