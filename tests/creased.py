@@ -54,7 +54,7 @@ def fitted_with_creases(name: str, angle: float = 30, size: int = 400, *override
 
 
 @cache
-def flat_map(name: str, longest: float = 0.2) -> tuple[Triangulation, Bisection]:
+def flat_map(name: str, longest: float = 0.04) -> tuple[Triangulation, Bisection]:
     """The map of a mesh as the pipeline makes it, without creases."""
     mesh = mesh_of(name)
     refinement = bisected(mesh, longest * mesh.diagonal, True)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.compiled.decorator import compiled
+from orbiframe.compiled.matrices import set_identity
 from orbiframe.delaunay.fresh_frames import centred, polished
 from orbiframe.delaunay.lawson_flips import turn
 from orbiframe.delaunay.site_triangulation import SiteTriangulation
@@ -20,7 +21,7 @@ Floats = NDArray[np.float64]
 _BEGINNING = 1e-4
 # Corners that agree to this, per the length of the geodesic, are its ends.
 _SAME = 1e-6
-_MOST_FLIPS = 2000
+_MOST_FLIPS = 200
 # No triangle is made that is smaller, per the square of that length: the geodesic runs through a vertex there.
 _LEAST = 1e-9
 
@@ -91,6 +92,9 @@ def _best_crossed(triangles, slot, p, q, tolerance, least):  # type: ignore[no-u
         if triangles.twin[e] // 3 == e // 3:
             return found
         t = adopt(triangles, e)
+        # The same frame to the bit, so that triangles that are met again are not moved again.
+        set_identity(triangles.gluing[e])
+        set_identity(triangles.gluing[t])
         a, b, c, d = corner(triangles, e), corner(triangles, t), corner(triangles, before(e)), corner(triangles, before(t))
         end = _near(d, q, tolerance)
         side = 0.0 if end else turn(k, p, q, d)

@@ -57,7 +57,10 @@ class CreaseGraph(NamedTuple):
         return cls(mesh, graph, links, _corners(mesh, graph, links) if stops is None else np.asarray(stops))
 
     def chains(self, triangulation: Triangulation) -> Iterator[Chain]:
-        """The curves from stop to stop, each once, and closed curves without a stop from their first vertex on."""
+        """The curves from stop to stop, each once, and closed curves without a stop from their first vertex on.
+
+        One that ends where no stop is ends there.
+        """
         graph, done = self.graph, ~self.links
         stop = np.zeros(len(self.mesh.vertices), dtype=np.bool_)
         stop[self.stops] = True
@@ -77,7 +80,10 @@ class CreaseGraph(NamedTuple):
             if stop[vertices[-1]] or vertices[-1] == begin:
                 return Chain(np.array(vertices), np.array(steps))
             here = np.arange(graph.start[vertices[-1]], graph.start[vertices[-1] + 1])
-            link = int(here[~done[here]][0])
+            ahead = here[~done[here]]
+            if not len(ahead):
+                return Chain(np.array(vertices), np.array(steps))
+            link = int(ahead[0])
 
     def _reverse(self, link: int, vertex: int) -> int:
         """The same edge seen from its other end."""

@@ -43,7 +43,9 @@ def test_creases_run_along_edges_of_the_domain(name: str) -> None:
 def test_the_map_follows_them(name: str) -> None:
     found, flat = placed(name), flat_map(name)[0]
     assert found.not_positive == 0
-    assert off_geodesics(found) < 1e-12 < off_geodesics(replace(flat, crease=found.crease, sites=found.sites))
+    assert off_geodesics(found) < 1e-12
+    if name.startswith("plate"):
+        assert off_geodesics(replace(flat, crease=found.crease, sites=found.sites)) > 1e-4
     moved = np.flatnonzero((found.points != flat.points).any(axis=1))
     on_crease = np.unique(found.polyhedron.tail[found.crease])
     assert np.isin(moved, on_crease).all()
