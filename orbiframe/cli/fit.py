@@ -40,7 +40,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--map", metavar="NAME", help="the map to X/H, such as equivariant (map.method)")
     add("--basis", metavar="NAME", help="the functions, such as ps6 or gaussian (basis.name)")
     add("--data", metavar="MEANS", help="what the mesh means: smooth, semi-smooth or facets; default auto (data.means)")
-    add("--creases", metavar="ANGLE", type=float, help="edges that bend by ANGLE degrees or more stay sharp (data.creases)")
+    add(
+        "--creases",
+        metavar="ANGLE",
+        type=float,
+        help="edges that bend by ANGLE degrees or more stay sharp (data.creases)",
+    )
     add("--fast", action="store_true", help="one linear fit on one map (fitter.name=least-squares, data.lift=false)")
     add("--shape", metavar="NAME", help="makes faces regular in X/H, such as regular-faces (shape.method)")
     add(

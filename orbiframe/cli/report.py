@@ -90,12 +90,15 @@ def _distances(distance: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 def _creases(creases: Mapping[str, Any] | None) -> Iterator[tuple[str, str]]:
     """The creases that were kept, if any, and how well."""
     if creases is not None:
-        curves, ends = _counted(creases["curves"], "curve", "curves"), _counted(creases["ends"], "end", "ends")
+        curves, corners = (
+            _counted(creases["curves"], "curve", "curves"),
+            _counted(creases["corners"], "corner", "corners"),
+        )
+        ends, (kink, worst) = _counted(creases["ends"], "end", "ends"), creases["kinks"]
         yield (
             "creases",
-            f"{curves} of {creases['angle_from']:g}° or more, {_counted(creases['corners'], 'corner', 'corners')}, {ends}; "
-            f"within {creases['distance']:.1e}, angles off by {creases['angle']:.2g}°, kinks beside them {creases['kinks'][0]:.2g}° "
-            f"(max {creases['kinks'][1]:.2g}°)",
+            f"{curves} of {creases['angle_from']:g}° or more, {corners}, {ends}; within {creases['distance']:.1e}, angles "
+            f"off by {creases['angle']:.2g}°, kinks beside them {kink:.2g}° (max {worst:.2g}°)",
         )
 
 

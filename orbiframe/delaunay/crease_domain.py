@@ -63,7 +63,8 @@ def crease_triangulation(triangulation: Triangulation) -> GeodesicTriangulation:
 
     Raises MapError where a piece of a crease between two sites is no edge.
     """
-    assert triangulation.crease is not None and triangulation.sites is not None
+    assert triangulation.crease is not None
+    assert triangulation.sites is not None
     domain, pieces, edges = _with_edges(triangulation, triangulation.crease, triangulation.sites, np.inf)
     if (edges < 0).any():
         raise MapError(_no_place(triangulation, pieces[int(np.argmin(edges))]))
@@ -79,7 +80,9 @@ def off_geodesics(triangulation: Triangulation) -> float:
     assert triangulation.crease is not None
     stop = np.zeros(len(triangulation.points), dtype=np.bool_)
     stop[triangulation.sites] = True
-    for piece in CreaseGraph.of(triangulation.polyhedron, triangulation.crease, triangulation.sites).chains(triangulation):
+    for piece in CreaseGraph.of(triangulation.polyhedron, triangulation.crease, triangulation.sites).chains(
+        triangulation
+    ):
         if not stop[piece.vertices[[0, -1]]].all():
             return np.inf
         x = piece.lifted(triangulation)
@@ -122,7 +125,7 @@ def _with_edges(
 def _edges_under(
     domain: GeodesicTriangulation, triangulation: Triangulation, pieces: list[Chain], vertex: Ints
 ) -> Ints:
-    """The halfedge of the domain that is the geodesic between the ends of each piece; -1 for none, or for one of two."""
+    """The halfedge of the domain that is the geodesic between the ends of each piece; -1 for none or two."""
     geometry, ends = domain.geometry, np.array([piece.vertices[[0, -1]] for piece in pieces])
     lifts = [piece.lifted(triangulation) for piece in pieces]
     middle = geometry.project(np.array([lift[0] + lift[-1] for lift in lifts]))
@@ -145,8 +148,8 @@ def _edges_under(
 def _no_place(triangulation: Triangulation, piece: Chain) -> str:
     place = ", ".join(f"{x:.4g}" for x in triangulation.polyhedron.vertices[piece.vertices].mean(axis=0))
     return (
-        f"a crease near ({place}) of the mesh, scaled to a box of diagonal 1 about the origin, cannot be a chain of edges "
-        "of the domain of the splines; ask for more functions (option size), or for fewer creases (a larger angle)"
+        f"a crease near ({place}) of the mesh, scaled to a box of diagonal 1 about the origin, cannot be a chain of "
+        "edges of the domain of the splines; ask for more functions (option size), or for fewer creases (a larger angle)"
     )
 
 
@@ -283,7 +286,9 @@ def _folded(moved: Triangulation, pieces: list[Chain]) -> list[Chain]:
     near[moved.polyhedron.triangles[bad]] = True
     found = [piece for piece in pieces if near[piece.vertices[1:-1]].any()]
     if not found:
-        raise MapError("triangles of the map fold where creases are made geodesic; ask for more functions (option size)")
+        raise MapError(
+            "triangles of the map fold where creases are made geodesic; ask for more functions (option size)"
+        )
     return found
 
 

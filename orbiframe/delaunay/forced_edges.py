@@ -26,9 +26,7 @@ _MOST_FLIPS = 200
 _LEAST = 1e-9
 
 
-def with_edge(
-    triangulation: GeodesicTriangulation, patch: int, start: Floats, end: Floats
-) -> SiteTriangulation | None:
+def with_edge(triangulation: GeodesicTriangulation, patch: int, start: Floats, end: Floats) -> SiteTriangulation | None:
     """The triangulation with an edge along the geodesic between two vertices, at start and end in a patch, (3,) each.
 
     Edges that it crosses are flipped where their quadrilaterals are convex, until none is left (Sloan, 1993). The sites
@@ -44,7 +42,9 @@ def with_edge(
     if not own.min() < _SAME * length:
         return None
     triangles = arrays_of(triangulation)
-    if not _force(triangles, 3 * int(location.face[0]) + int(own.argmin()), tuple(q), _SAME * length, _LEAST * length**2):
+    if not _force(
+        triangles, 3 * int(location.face[0]) + int(own.argmin()), tuple(q), _SAME * length, _LEAST * length**2
+    ):
         return None
     arrays = triangles.corners, triangles.twin, triangles.same, triangles.patch, triangles.placement
     found = polished(centred(triangulation.orbifold, *arrays))
@@ -95,7 +95,12 @@ def _best_crossed(triangles, slot, p, q, tolerance, least):  # type: ignore[no-u
         # The same frame to the bit, so that triangles that are met again are not moved again.
         set_identity(triangles.gluing[e])
         set_identity(triangles.gluing[t])
-        a, b, c, d = corner(triangles, e), corner(triangles, t), corner(triangles, before(e)), corner(triangles, before(t))
+        a, b, c, d = (
+            corner(triangles, e),
+            corner(triangles, t),
+            corner(triangles, before(e)),
+            corner(triangles, before(t)),
+        )
         end = _near(d, q, tolerance)
         side = 0.0 if end else turn(k, p, q, d)
         if turn(k, c, a, d) > least and turn(k, c, d, b) > least:

@@ -78,8 +78,8 @@ def domain_for(
 
     A geodesic triangulation is taken as it is. From the map of a mesh a domain is made with V vertices, where V
     follows from E = 3 (V - chi) and F = 2 (V - chi); in S^2 and H^2 with more vertices, hence functions, if need be,
-    see `fewest_vertices`. That of a map with creases has the sites of the map. creases: whether the functions keep creases. Raises FitError for a triangulation of another
-    orbifold, and for one with creases where they are not kept.
+    see `fewest_vertices`. That of a map with creases has the sites of the map. creases: whether the functions keep
+    creases. Raises FitError for a triangulation of another orbifold, and for one with creases that are not kept.
     """
     if triangulation.orbifold is not orbifold:
         raise FitError("the triangulation belongs to another orbifold than the functions; pass triangulation.orbifold")

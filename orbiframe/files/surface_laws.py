@@ -197,7 +197,9 @@ def require_creases(triangulation: Triangulation) -> None:
     require(np.diff(np.sort(sites)) > 0, "sites", "they are different")
     ends = np.concatenate([mesh.tail, mesh.head])[np.tile(crease & mesh.representative, 2)]
     degree = np.bincount(ends, minlength=count)
-    require(np.isin(np.flatnonzero((degree > 0) & (degree != 2)), sites), "sites", "ends and corners of creases are sites")
+    require(
+        np.isin(np.flatnonzero((degree > 0) & (degree != 2)), sites), "sites", "ends and corners of creases are sites"
+    )
     require(off_geodesics(triangulation) <= _NEAR, "points", "creases run along geodesics from site to site")
     try:
         crease_triangulation(triangulation)

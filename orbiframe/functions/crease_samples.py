@@ -24,6 +24,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
+# Planes beside a crease hold it: a sample of theirs on it counts so many times.
+_ON_CREASE = 12.0
 # How far inside of a triangle the side of a corner is told, as a share of the triangle.
 _INSIDE = 1e-7
 # A facet whose arc is higher than this share of the distance of functions stands for something curved.
@@ -86,6 +88,7 @@ def crease_samples(
     share = _shares(np.concatenate([at_side, fine_height]) / (_SAGITTA * spacing), curved)
     plain = np.concatenate([_total(sides, area / 12), 0.75 * area])
     weights = share * plain
+    weights[: len(sides.vertex)] *= np.where(sides.parted & ~bent[: len(sides.vertex)], _ON_CREASE, 1.0)
     if curved == "bent":
         weights[: len(sides.vertex)] *= np.where(bent[: len(sides.vertex)], 4.0, 1.0)
     if curved != "none":
@@ -111,7 +114,9 @@ def crease_samples(
         normals=normals,
         still=~bent | np.concatenate([sides.parted, np.zeros(flat.face_count, dtype=np.bool_)]),
     )
-    samples = _joined(samples, _within_small(triangulation, refinement, samples, bent[len(sides.vertex) :], share, long))
+    samples = _joined(
+        samples, _within_small(triangulation, refinement, samples, bent[len(sides.vertex) :], share, long)
+    )
     return samples.take(np.flatnonzero((samples.weights > 0) | (samples.shares > 0)))
 
 
@@ -159,8 +164,8 @@ def _joined(a: Samples, b: Samples) -> Samples:
         return np.concatenate([getattr(a, name), getattr(b, name)])
 
     points = Points(np.concatenate([a.points.patch, b.points.patch]), np.concatenate([a.points.x, b.points.x]))
-    tables = (both(name) for name in ("values", "weights", "stretch", "area", "length"))
-    return Samples(points, *tables, a.order, normals=both("normals"), still=both("still"))
+    tables = {name: both(name) for name in ("values", "weights", "stretch", "area", "length", "normals", "still")}
+    return Samples(points, order=a.order, **tables)
 
 
 def _lengths_of_facets(triangulation: Triangulation, refinement: Bisection) -> Floats:
@@ -170,7 +175,7 @@ def _lengths_of_facets(triangulation: Triangulation, refinement: Bisection) -> F
 def _arcs(refinement: Bisection, crease: Bools, height: Floats) -> tuple[Floats, Floats]:
     """The heights of the arcs of what facets stand for, over the corners of the fine triangles (G, 3), and over these.
 
-    Over vertices of facets there is none; over an edge it is that of the arc with the normals of the facets at its ends.
+    Over vertices of facets there is none; over an edge it is that of the arc with the normals of facets at its ends.
     """
     facets = refinement.facets
     side = corner_sides(facets, crease)
@@ -186,7 +191,9 @@ def _arcs(refinement: Bisection, crease: Bools, height: Floats) -> tuple[Floats,
     opposite = (near.argmax(axis=2) + 1) % 3
     zeros = near.sum(axis=2)
     edge = over_edge[facet[:, None], opposite]
-    found = np.where(zeros == 0, height[facet][:, None], np.where(zeros == 1, np.minimum(edge, height[facet][:, None]), 0))
+    found = np.where(
+        zeros == 0, height[facet][:, None], np.where(zeros == 1, np.minimum(edge, height[facet][:, None]), 0)
+    )
     return np.asarray(found), height[facet]
 
 
@@ -212,7 +219,9 @@ def _at_given(sides: Sides, facets: Polyhedron, area: Floats, curved: Bools) -> 
     """What the sides of given vertices count for beside curved facets, (S,): a third of the area of those about."""
     given = sides.vertex < len(facets.vertices)
     around = np.bincount(
-        facets.tail, weights=np.linalg.norm(vector_areas(facets), axis=1)[facets.face] / 3, minlength=len(facets.vertices)
+        facets.tail,
+        weights=np.linalg.norm(vector_areas(facets), axis=1)[facets.face] / 3,
+        minlength=len(facets.vertices),
     )
     weight, chosen = np.zeros(len(sides.vertex)), np.flatnonzero(given)
     share = _total(sides, np.where(curved, area, 0.0))

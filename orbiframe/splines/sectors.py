@@ -29,7 +29,7 @@ Bools = NDArray[np.bool_]
 
 # Where along an edge the slope at its end is given as a coefficient, as a share of the edge on the tangent plane.
 _REACH = 0.5
-# A part of a sector wider than this gets a further hair, if it has an inner edge: beside opposite edges digits are lost.
+# A part of a sector wider than this gets a further hair, if it has an inner edge: opposite edges cost digits.
 _WIDEST = np.radians(150)
 
 
@@ -212,7 +212,7 @@ class Sectors:
 
         Also the last corner, and whether the walk has come to its starting edge.
         """
-        d, corners, crossed = self.domain, [corner], []
+        d, corners, crossed = self.domain, [corner], list[int]()
         while True:
             leave = not out
             across = corner if leave else corner - corner % 3 + (corner + 2) % 3

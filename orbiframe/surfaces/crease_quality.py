@@ -46,8 +46,8 @@ class CreaseQuality(NamedTuple):
         """Sentences for what a user should look at."""
         if self.kinks[1] > _KINK:
             yield (
-                f"the surface has kinks of up to {self.kinks[1]:.1f}° beside its creases, where it should be smooth; more "
-                "functions help (option size)"
+                f"the surface has kinks of up to {self.kinks[1]:.1f}° beside its creases, where it should be smooth; "
+                "more functions help (option size)"
             )
 
 

@@ -145,8 +145,9 @@ class OrbifoldSurface:
 
         bisected: every triangle of the refined mesh instead, so that triangles are even in size and small where the
         input is thin. Watertight and of the topology of the input: every vertex is evaluated once, and the faces are
-        glued as those of the input are. Creases are edges, and the corners of faces there have normals of their own. Where a file could not tell the edges by their ends, triangles are halved
-        first, see `refined_by_ends`. Normals point to the side from which the faces run counterclockwise.
+        glued as those of the input are. Creases are edges, and the corners of faces there have normals of their own.
+        Where a file could not tell the edges by their ends, triangles are halved first, see `refined_by_ends`. Normals
+        point to the side from which the faces run counterclockwise.
         """
         return self.tessellation(density, bisected=bisected).mesh
 
@@ -174,7 +175,10 @@ class OrbifoldSurface:
         None for a mesh whose triangles had to be halved to tell them by their ends.
         """
         assert mesh.normals is not None
-        if mesh.face_count != density**2 * (self.triangulation.polyhedron if bisected else self.refinement.coarse).face_count:
+        if (
+            mesh.face_count
+            != density**2 * (self.triangulation.polyhedron if bisected else self.refinement.coarse).face_count
+        ):
             return None
         corner = np.flatnonzero(on_crease(self.triangulation, face, barycentric)[mesh.tail])
         own = mesh.normals[mesh.tail]

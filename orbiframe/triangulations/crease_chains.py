@@ -23,7 +23,7 @@ _ON_EDGE = 1e-9
 
 
 class Chain(NamedTuple):
-    """A curve along edges: its vertices (m + 1,), and the transition from the frame of each to that of the next (m,)."""
+    """A curve along edges: its vertices (m + 1,), and the transitions from the frame of each to the next one (m,)."""
 
     vertices: Ints
     steps: Ints

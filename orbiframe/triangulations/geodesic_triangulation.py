@@ -219,7 +219,9 @@ class GeodesicTriangulation:
         corners, placement = about_centres(geometry, child.reshape(-1, 3, 3), np.repeat(self.placement, 4, axis=0))
         gluing = edge_gluings(geometry, corners, twin, same)
         patch = np.repeat(self.patch, 4)
-        return GeodesicTriangulation(self.orbifold, corners, twin, same, gluing, patch, placement, self._refined_creases())
+        return GeodesicTriangulation(
+            self.orbifold, corners, twin, same, gluing, patch, placement, self._refined_creases()
+        )
 
     def _refined_creases(self) -> Bools | None:
         """The halves of creases."""

@@ -28,6 +28,8 @@ _LONGEST_STEP = 0.3
 _MOST_STRETCH = 30.0
 # A step that leaves more than this share of the distance is the last one.
 _GAIN = 0.97
+# With creases at least so many, for planes become flat while curved sides have long settled.
+_LEAST_STEPS = 4
 # A smooth surface is shrunk to at least so much in one step at every datum: beyond, a limb is being pinched off.
 _LEAST_SHARE = 0.35
 # Up to so many functions the equations of a step are factored as a whole; of more, iteration takes less time.
@@ -47,8 +49,8 @@ _SCHEDULES = {
     2: (Schedule(1e-4, 1e-2, 1e-3), Schedule(1e-4, 5e-3, 1e-3)),
     3: (Schedule(1e-4, 1e-3, 0.0), Schedule(1e-6, 1e-4, 0.0)),
 }
-# Between creases flat facets are flat in any parametrization, so that very little fairness is enough; beside curved ones
-# more damping and some pull keep parameters from gliding away.
+# Between creases flat facets are flat in any parametrization, so that very little fairness is enough; beside curved
+# ones more damping and some pull keep parameters from gliding away.
 _FLAT = (Schedule(1e-5, 1e-3, 0.0), Schedule(1e-6, 1e-3, 0.0))
 _CURVED = (Schedule(1e-5, 1e-2, 1e-4), Schedule(1e-6, 1e-2, 1e-4))
 # How much a kink across a hair counts against a distance of what it would lift at the spacing of the functions.
@@ -178,7 +180,7 @@ class _Slide:
             else:
                 return coefficients
             coefficients, feet = trial, there
-            if distance > _GAIN * before and step >= len(self.schedules) - 1:
+            if distance > _GAIN * before and step >= (_LEAST_STEPS if self.creased else len(self.schedules)) - 1:
                 break
         return coefficients
 
@@ -191,9 +193,7 @@ class _Slide:
         return [found.under(coefficients, part.values) for found, part in zip(feet, self.data, strict=True)]
 
     def _distance(self, feet: list[_Feet]) -> float:
-        total = sum(
-            float(part.weights @ _away(found, part) ** 2) for found, part in zip(feet, self.data, strict=True)
-        )
+        total = sum(float(part.weights @ _away(found, part) ** 2) for found, part in zip(feet, self.data, strict=True))
         return float(np.sqrt(total / sum(part.weights.sum() for part in self.data)))
 
     def _slid(self, feet: list[_Feet], coefficients: Floats) -> list[_Feet]:
@@ -297,8 +297,8 @@ def _known_normals(feet: _Feet, part: Samples) -> tuple[Floats, Floats]:
     normal, curvature = _normals(feet.jets)
     if part.normals is None:
         return normal, curvature
-    known = np.isfinite(part.normals).all(axis=1)
-    return np.where(known[:, None], part.normals, normal), curvature
+    known: Floats = np.isfinite(part.normals).all(axis=1).reshape(-1, 1)
+    return np.where(known, part.normals, normal), curvature
 
 
 def _linearised(feet: _Feet, part: Samples, schedule: Schedule) -> tuple[Floats, Floats]:

@@ -1,4 +1,4 @@
-"""Samples of meshes with creases: on every side of a crease, with its normal, and what counts where facets are curved."""
+"""Samples of meshes with creases: on every side of a crease, with its normal, and what counts on curved facets."""
 
 from __future__ import annotations
 
