@@ -97,8 +97,8 @@ def _creases(creases: Mapping[str, Any] | None) -> Iterator[tuple[str, str]]:
         ends, (kink, worst) = _counted(creases["ends"], "end", "ends"), creases["kinks"]
         yield (
             "creases",
-            f"{curves} of {creases['angle_from']:g}° or more, {corners}, {ends}; within {creases['distance']:.1e}, angles "
-            f"off by {creases['angle']:.2g}°, kinks beside them {kink:.2g}° (max {worst:.2g}°)",
+            f"{curves} of {creases['angle_from']:g}° or more, {corners}, {ends}; within {creases['distance']:.1e}, "
+            f"angles off by {creases['angle']:.2g}°, kinks beside them {kink:.2g}° (max {worst:.2g}°)",
         )
 
 

@@ -149,7 +149,8 @@ def _no_place(triangulation: Triangulation, piece: Chain) -> str:
     place = ", ".join(f"{x:.4g}" for x in triangulation.polyhedron.vertices[piece.vertices].mean(axis=0))
     return (
         f"a crease near ({place}) of the mesh, scaled to a box of diagonal 1 about the origin, cannot be a chain of "
-        "edges of the domain of the splines; ask for more functions (option size), or for fewer creases (a larger angle)"
+        "edges of the domain of the splines; ask for more functions (option size), or for fewer creases (a larger "
+        "angle)"
     )
 
 

@@ -42,12 +42,16 @@ def with_edge(triangulation: GeodesicTriangulation, patch: int, start: Floats, e
     if not own.min() < _SAME * length:
         return None
     triangles = arrays_of(triangulation)
-    if not _force(
-        triangles, 3 * int(location.face[0]) + int(own.argmin()), tuple(q), _SAME * length, _LEAST * length**2
-    ):
+    slot = 3 * int(location.face[0]) + int(own.argmin())
+    try:
+        if not _force(triangles, slot, tuple(q), _SAME * length, _LEAST * length**2):
+            return None
+    except ZeroDivisionError:  # a triangle that is carried so far round the sphere that nothing is left of it
         return None
     arrays = triangles.corners, triangles.twin, triangles.same, triangles.patch, triangles.placement
     found = polished(centred(triangulation.orbifold, *arrays))
+    if not found.areas.min() > 0:
+        return None
     number = np.empty(triangulation.vertex_count, dtype=np.intp)
     number[triangles.vertex] = found.vertex.ravel()
     return SiteTriangulation(found, number)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
-from orbiframe.functions.crease_samples import crease_samples
 from orbiframe.functions.samples import Samples, coordinate_samples
+from orbiframe.functions.samples_of_sides import crease_samples
 from orbiframe.functions.smooth_samples import semi_smooth_samples, vertex_samples
 from orbiframe.meshes.bending import bending, sharp_edges
 from orbiframe.meshes.bisection import Bisection

@@ -19,7 +19,7 @@ _BESIDE = 1e-7
 
 
 class HairPoints(NamedTuple):
-    """Points of X/H beside hairs, inside and outside of one triangle, and unit vectors across, (n, 2), in their frames."""
+    """Points of X/H on both sides of hairs, and unit vectors across, (n, 2), in their frames."""
 
     inside: Points
     outside: Points

@@ -297,8 +297,8 @@ def _known_normals(feet: _Feet, part: Samples) -> tuple[Floats, Floats]:
     normal, curvature = _normals(feet.jets)
     if part.normals is None:
         return normal, curvature
-    known: Floats = np.isfinite(part.normals).all(axis=1).reshape(-1, 1)
-    return np.where(known, part.normals, normal), curvature
+    unknown = np.isnan(part.normals)
+    return np.where(unknown, normal, part.normals), curvature
 
 
 def _linearised(feet: _Feet, part: Samples, schedule: Schedule) -> tuple[Floats, Floats]:

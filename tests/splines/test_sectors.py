@@ -67,7 +67,7 @@ def test_functions_do_bend_across_creases(family: type) -> None:
 @settings(max_examples=12, deadline=None)
 @given(name=st.sampled_from(list(checks.MAKERS)), share=st.floats(0, 1), seed=st.integers(0, 99))
 def test_there_are_as_many_functions_as_sectors_say(name: str, share: float, seed: int, family: type) -> None:
-    """Independent; 1 + k at a vertex with k >= 2 open edges, 3 at others; clough-tocher has one for each side of edges."""
+    """Independent; 1 + k at a vertex with k >= 2 open edges, 3 at others; clough-tocher: one for each side of edges."""
     domain = with_creases(name, share, seed)
     basis, sectors = family(domain.orbifold, domain), Sectors(domain)
     first = np.flatnonzero(sectors.open & domain.reference)
