@@ -65,7 +65,7 @@ def _lines(report: Mapping[str, Any], written: str | None) -> Iterator[tuple[str
     yield "fit", f"{fit['basis']}, {fit['size']} functions, {fit['samples']} samples, {fit['fitter']}"
     yield "error", f"rms {fit['rms']:.2e}, max {fit['max']:.2e} of the bounding-box diagonal"
     yield from _distances(report["distance"])
-    yield from _creases(report["creases"])
+    yield from _creases(report.get("creases"))
     yield from (("warning", note) for note in report["notes"])
     yield from _ending(report, written)
 

@@ -13,7 +13,7 @@ from scipy.sparse import csr_array
 from orbiframe import Basis, DifferentiableBasis, Fitter, Points, Samples
 from orbiframe.functions import foot_step, moved
 from orbiframe_fitters.energy import FAIRING, Energy, energy_of, spacing
-from orbiframe_fitters.gram import DENSE, Gram
+from orbiframe_fitters.gram import Gram
 from orbiframe_fitters.kinks import Kinks
 from orbiframe_fitters.least_squares import chunks, linear_fit, require_not_negative
 from orbiframe_fitters.normal_equations import nearly_solved, solved
@@ -248,9 +248,9 @@ class _Slide:
         return solved(_joined(rows), right.T.reshape(-1, 1)).reshape(3, -1).T
 
     @property
-    def _room(self) -> float:
+    def _room(self) -> float | None:
         """Up to how many numbers matrices are dense: with creases the equations are solved as a whole, and sparse."""
-        return 0.0 if self.creased else DENSE
+        return 0.0 if self.creased else None
 
     def _smoothed(self, kinks: Kinks, coefficients: Floats) -> tuple[Floats, Floats]:
         """For each point of a hair the six entries of the form of its kink, (n, 6), and its right side, (n, 3)."""
