@@ -138,7 +138,7 @@ def _write_elements(
     found.report["seconds"]["elements"] = round(time.perf_counter() - start, 4)
     progress("elements", found.report["seconds"]["elements"])
     other = any(part.gluing is not surface.refinement.coarse for part, surface in zip(faces, surfaces, strict=True))
-    if other and not args.quiet:
+    if other and not args.quiet and all(surface.triangulation.crease is None for surface in surfaces):
         say("triangles of the input fold as geodesic triangles, so the elements are Delaunay triangles of its vertices")
     return f"{len(mesh.elements)} triangles of order {mesh.order}, {len(mesh.nodes)} nodes, {_size(args.output)}"
 

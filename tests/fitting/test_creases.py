@@ -250,3 +250,25 @@ def test_a_cylinder_of_the_tests_is_one() -> None:
     np.testing.assert_allclose(np.hypot(x[:, 0], x[:, 1]), 0.5)
     assert (DATASETS / PLATE).exists()
     assert issubclass(UsageError, Exception)
+
+
+def test_elements_of_a_creased_surface_do_not_straddle_creases() -> None:
+    """Every triangle lies on one face of the polyhedron: its corners and middles are in one plane."""
+    from orbiframe.surfaces import curved_mesh, input_faces
+
+    surface = fitted_with_creases(PLATE, size=600).surface
+    mesh = curved_mesh(surface, input_faces(surface), 2, 1)
+    nodes = mesh.nodes[mesh.elements]
+    sizes = np.linalg.svd(nodes - nodes.mean(axis=1, keepdims=True), compute_uv=False)
+    assert (sizes[:, 2] < 1e-4 * sizes[:, 0]).all()
+
+
+def test_few_faces_of_a_creased_surface_are_refused(tmp_path: Path) -> None:
+    pytest.importorskip("OCP", reason='Open CASCADE is the extra "orbiframe[cad]"')
+    from orbiframe_exact.open_cascade import write_step
+
+    from orbiframe.errors import FitError
+
+    surface = fitted_with_creases("cube.off", 30, 300, "basis.name=ps2").surface
+    with pytest.raises(FitError, match="would round the creases"):
+        write_step(tmp_path / "cube.step", surface, exact=False)

@@ -29,7 +29,7 @@ def test_sides_of_a_crease_have_its_normals() -> None:
     np.testing.assert_allclose(np.abs(samples.normals[corner]).sum(axis=0), 1, atol=1e-9)
 
 
-@pytest.mark.parametrize("name", ["cube.off", "klein_bottle.off", "projective_plane.off"])
+@pytest.mark.parametrize("name", ["cube.off", "klein_bottle.off"])
 def test_areas_add_up(name: str) -> None:
     found, refinement = placed(name), flat_map(name)[1]
     samples = crease_samples(found, refinement, SPACING, curved="none")
