@@ -81,6 +81,7 @@ _OPTIONAL: dict[str, tuple[type, tuple[int | str, ...]]] = {
     "density": (np.float64, ("W",)),
     "flip_halfedge": (np.intp, ("L", 2)),
     "flip_crossing": (np.float64, ("L", 2)),
+    "flip_halved": (np.bool_, ("L",)),
 }
 _KINDS = _SHAPES | _OPTIONAL
 
@@ -289,6 +290,7 @@ def _arrays(surface: OrbifoldSurface) -> dict[str, NDArray[Any]]:
 
 
 def _optional(surface: OrbifoldSurface) -> dict[str, NDArray[Any] | None]:
-    flips = surface.refinement.flips
-    turned = {} if flips is None else {"flip_halfedge": flips.halfedge, "flip_crossing": flips.crossing}
-    return {"density": surface.triangulation.density, **turned}
+    log = surface.refinement.log
+    steps = {} if log is None else {"flip_halfedge": log.halfedge, "flip_crossing": log.crossing}
+    halved = {} if log is None or not log.halved.any() else {"flip_halved": log.halved}
+    return {"density": surface.triangulation.density, **steps, **halved}
