@@ -13,7 +13,7 @@ from orbiframe.errors import MapError
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.stages import Stages
 from orbiframe.groups.marked_group import MarkedGroup
-from orbiframe.meshes.bisection import Bisection, bisected, edge_length_for, triangles_made
+from orbiframe.meshes.bisection import Bisection, affordable_length, bisected, even_edge_length, triangles_made
 from orbiframe.meshes.edge_log import EdgeLog
 from orbiframe.meshes.flat_flips import flat_flips
 from orbiframe.meshes.intrinsic_refinement import intrinsic_refinement
@@ -30,8 +30,9 @@ NAMED_PARAMETRIZER = {"s2": "sphere", "e2": "equivariant", "h2": "equivariant"}
 
 _VERTICES_PER_FUNCTION = 6
 _LEAST_VERTICES = 3000
-# Bisection that makes more triangles than this for each vertex that is aimed at cuts needles.
-_MOST_TRIANGLES = 20
+# Bisection that makes more new triangles than this for each vertex that is aimed at cuts needles; so many vertices are
+# put on their surface at most.
+_NEEDLES, _MOST = 3, 20
 
 
 class Mapped(NamedTuple):
@@ -80,14 +81,15 @@ class Mapping:
     def _refined(self, longest: float, vertices: int) -> Bisection:
         """The mesh with no edge longer than `longest`; needles by the thousand are not halved each for itself."""
         log, made = self.flips, triangles_made(self.facets, longest)
-        if log is not None and made > _MOST_TRIANGLES * vertices + self.facets.face_count:
-            log = intrinsic_refinement(log, longest, _MOST_TRIANGLES * vertices)
-        return bisected(self.triangles, longest, True, log)
+        if log is not None and made > _NEEDLES * vertices + self.facets.face_count:
+            log = intrinsic_refinement(log, longest, _MOST * vertices)
+        facets = self.triangles if log is None else log.after
+        return bisected(self.triangles, affordable_length(facets, longest, vertices), True, log)
 
     def for_size(self, size: int) -> Mapped:
         """The mesh refined so that samples and centres are dense enough for so many functions, and its map to X/H."""
         vertices = max(_LEAST_VERTICES, _VERTICES_PER_FUNCTION * size)
-        longest = edge_length_for(self.facets, vertices)
+        longest = even_edge_length(self.facets, vertices)
         if longest not in self.maps:
             refinement = self.stages("refinement", self._refined, longest, vertices)
             self.maps[longest] = self._mapped(refinement, refinement.polyhedron)

@@ -19,6 +19,8 @@ Bools = NDArray[np.bool_]
 
 # Meshes without thousands of equal edges round a vertex are refined in 5 to 35 rounds.
 _PATIENCE = 50
+# Triangles for each vertex that is aimed at.
+_MOST = 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +145,22 @@ def bisected(polyhedron: Polyhedron, longest: float, simplicial: bool = False, l
 
 
 def edge_length_for(polyhedron: Polyhedron, vertices: int) -> float:
-    """The longest edge that gives about so many vertices, spread evenly over the surface."""
+    """The longest edge that gives about so many vertices by bisection, spread evenly over the surface.
+
+    Needle-like triangles need more: the length is doubled until about ten times as many are enough.
+    """
+    return affordable_length(polyhedron, even_edge_length(polyhedron, vertices), vertices)
+
+
+def affordable_length(polyhedron: Polyhedron, longest: float, vertices: int) -> float:
+    """A length, doubled until bisection to it adds no more than about ten times as many vertices as are aimed at."""
+    while triangles_made(polyhedron, longest) > _MOST * vertices + polyhedron.face_count:
+        longest *= 2
+    return longest
+
+
+def even_edge_length(polyhedron: Polyhedron, vertices: int) -> float:
+    """The longest edge of triangles of about the same size and shape, with so many vertices, over the surface."""
     area = float(np.linalg.norm(vector_areas(polyhedron), axis=1).sum())
     # Edges end up between half the longest and the longest: a vertex holds about 0.42 of its square.
     return max(float(np.sqrt(area / (0.42 * vertices))), 1e-9 * float(polyhedron.edge_lengths.max()))

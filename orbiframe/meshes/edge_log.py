@@ -26,7 +26,8 @@ class EdgeLog:
     of flipping it, none if not given. The crossing of such a step is (1/2, 0).
 
     The edge i-j lies between the triangles (i, j, k) and (j, i, m). A flip makes them (m, k, i) and (k, m, j). Halving
-    makes them (i, v, k) and (j, v, m) and adds (v, j, k) and (v, i, m), with the new vertex v.
+    makes them (i, v, k) and (j, v, m) and adds (v, j, k) and (v, i, m), with the new vertex v. An edge whose two
+    triangles are (i, j, k) and (i, j, m) may be halved too, which makes (i, v, k), (i, v, m), (v, j, k) and (v, j, m).
     """
 
     before: Polyhedron
@@ -45,7 +46,7 @@ class EdgeLog:
 
     @property
     def is_sound(self) -> bool:
-        """Whether the two halfedges of every step were twins that run in opposite directions when it was made."""
+        """Whether the halfedges of every step were twins of two triangles then, and those of flips ran oppositely."""
         return self._replayed[1]
 
     @property
@@ -135,14 +136,16 @@ def halve(tail, twin, same, h, t, sides, v):  # type: ignore[no-untyped-def]
     hn, tn = after(h), after(t)
     hp, tp = after(hn), after(tn)
     f, g = sides, sides + 3
-    i, j, k, m = tail[h], tail[t], tail[hp], tail[tp]
+    j, i, k, m = tail[hn], tail[tn], tail[hp], tail[tp]
     _move(twin, same, (hn, tn, hp, tp), (f + 1, g + 1, hp, tp))
     tail[hn] = tail[tn] = v
     tail[f], tail[f + 1], tail[f + 2] = v, j, k
     tail[g], tail[g + 1], tail[g + 2] = v, i, m
-    for one, other in ((h, g), (f, t), (hn, f + 2), (tn, g + 2)):
+    alike = same[h]
+    first, second = (t, g) if alike else (g, t)
+    for one, other in ((hn, f + 2), (tn, g + 2), (h, first), (f, second)):
         twin[one], twin[other] = other, one
-        same[one] = same[other] = False
+        same[one] = same[other] = alike and one in (h, f)
 
 
 @compiled
@@ -150,7 +153,7 @@ def _replay(tail, twin, same, halfedge, halved, sides, vertices):  # type: ignor
     """Do all steps again; False, and no further, where two halfedges are no twins."""
     for n in range(len(halfedge)):
         h, t = halfedge[n]
-        if not (0 <= h < sides and 0 <= t < sides) or twin[h] != t or same[h] or h // 3 == t // 3:
+        if not (0 <= h < sides and 0 <= t < sides) or twin[h] != t or h // 3 == t // 3 or (same[h] and not halved[n]):
             return False
         if halved[n]:
             halve(tail, twin, same, h, t, sides, vertices)

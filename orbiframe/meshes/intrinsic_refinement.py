@@ -16,24 +16,33 @@ from orbiframe.meshes.edge_log import EdgeLog, after, flip, halve
 _TIE = 1e-6
 _STEP = 1.5  # edges longer than a bound are halved, and the bound falls by so much
 _FLIPS_PER_HALFEDGE = 40
+_NOTHING = 1e-9
 
 
 def intrinsic_refinement(log: EdgeLog, longest: float, most: int) -> EdgeLog:
     """More steps for the log of a closed triangle mesh, until it is Delaunay and no edge is longer than `longest`.
 
-    Lengths are those of geodesics on the mesh. Sharp edges stay, halved or not, and so do edges whose twin runs the
-    same way, whole. most: so many edges are halved at most. The new vertices lie on the mesh before; the triangles of
-    the mesh after are spanned by chords.
+    Lengths are those of geodesics on the mesh. Sharp edges are halved but not flipped, and so are edges whose twin runs
+    the same way. most: so many edges are halved at most. The new vertices lie on the mesh before; the triangles of the
+    mesh after are spanned by chords. Nothing is done where a triangle meets itself along an edge.
     """
+    if (log.after.face == log.after.face[log.after.twin]).any():
+        return log
     mesh, room = log.after, np.zeros(6 * most, dtype=np.intp)
     tail, twin = np.concatenate([mesh.tail, room]), np.concatenate([mesh.twin, room - 1])
-    same, fixed = (np.concatenate([flags, room > 0]) for flags in (mesh.same, bending(mesh).angle > SHARP))
+    same, fixed = (
+        np.concatenate([flags, room > 0]) for flags in (mesh.same, mesh.same | (bending(mesh).angle > SHARP))
+    )
     length = np.concatenate([mesh.edge_lengths, np.zeros(len(room))])
     sides, vertices = len(mesh.tail), len(mesh.vertices)
     limit = _FLIPS_PER_HALFEDGE * len(tail)
     halfedge, crossing, halved = _refine(tail, twin, same, fixed, length, sides, vertices, longest, limit)
-    steps = (np.concatenate(pair) for pair in ((log.halfedge, halfedge), (log.crossing, crossing)))
-    return EdgeLog(log.before, *steps, np.concatenate([log.halved, halved]))
+    return EdgeLog(
+        log.before,
+        np.concatenate([log.halfedge, halfedge]),
+        np.concatenate([log.crossing, crossing]),
+        np.concatenate([log.halved, halved]),
+    )
 
 
 @compiled
@@ -48,7 +57,7 @@ def _corner(e, a, b):  # type: ignore[no-untyped-def]
 
 @compiled
 def _unfolded(length, h, t):  # type: ignore[no-untyped-def]
-    """The corners opposite to an edge of two triangles, laid out in a plane with the edge from 0 along the first axis."""
+    """An edge of two triangles, laid along an axis of the plane, and the corners opposite to it, each on its side."""
     e = length[h]
     x, y = _corner(e, length[after(after(h))], length[after(h)])
     u, v = _corner(e, length[after(t)], length[after(after(t))])
@@ -91,6 +100,32 @@ def _halve_lengths(length, fixed, h, t, f):  # type: ignore[no-untyped-def]
 
 
 @compiled
+def _may_be_halved(length, twin, h):  # type: ignore[no-untyped-def]
+    """Whether an edge has two triangles, and no corner of them in its middle."""
+    if h // 3 == twin[h] // 3:
+        return False
+    e, x, y, u, v = _unfolded(length, h, twin[h])
+    return min(np.hypot(x - e / 2, y), np.hypot(u - e / 2, v)) > _NOTHING * e
+
+
+@compiled
+def _first(length, twin, fixed, h, short):  # type: ignore[no-untyped-def]
+    """The edge to halve before another one: a fixed one whose middle would be crowded by the new vertex (Ruppert
+
+    1995), that is, which the new vertex sees under an obtuse angle; itself if there is none.
+    """
+    t = twin[h]
+    e, x, y, u, v = _unfolded(length, h, t)
+    to_k, to_m = np.hypot(x - e / 2, y), np.hypot(u - e / 2, v)
+    for outer in (after(h), after(after(h)), after(t), after(after(t))):
+        seen = e * e / 4 + (to_k * to_k if outer // 3 == h // 3 else to_m * to_m)
+        long = fixed[outer] and length[outer] > short and seen < length[outer] * length[outer]
+        if long and _may_be_halved(length, twin, outer):
+            return outer
+    return h
+
+
+@compiled
 def _push(stack, waiting, twin, h):  # type: ignore[no-untyped-def]
     edge = min(h, twin[h])
     if not waiting[edge]:
@@ -115,7 +150,7 @@ def _refine(tail, twin, same, fixed, length, sides, vertices, longest, limit):  
             waiting[edge] = False
             t = twin[edge]
             k, m = tail[after(after(edge))], tail[after(after(t))]
-            if edge // 3 == t // 3 or same[edge] or fixed[edge] or k == m:
+            if edge // 3 == t // 3 or fixed[edge] or k == m:
                 continue
             wanted, old, new, chord = _crossing(length, edge, t)
             if not wanted:
@@ -128,17 +163,16 @@ def _refine(tail, twin, same, fixed, length, sides, vertices, longest, limit):  
                 _push(stack, waiting, twin, outer)
         if sides == len(tail) or len(pairs) >= limit:
             break
-        while h < sides and (length[h] <= bound or same[h] or h // 3 == twin[h] // 3):
+        while h < sides and not (length[h] > bound and _may_be_halved(length, twin, h)):
             h += 1
         if h < sides:
-            t = twin[h]
-            _halve_lengths(length, fixed, h, t, sides)
-            halve(tail, twin, same, h, t, sides, vertices)
-            pairs.append((h, t))
+            edge = _first(length, twin, fixed, h, longest / 2)
+            t = twin[edge]
+            _halve_lengths(length, fixed, edge, t, sides)
+            halve(tail, twin, same, edge, t, sides, vertices)
+            pairs.append((edge, t))
             shares.append((0.5, 0.0, True))
-            for outer in (h, t, after(after(h)), after(after(t)), after(h), after(t)):
-                _push(stack, waiting, twin, outer)
-            for outer in (sides, sides + 1, sides + 3, sides + 4):
+            for outer in (after(after(edge)), after(after(t)), sides + 1, sides + 4):
                 _push(stack, waiting, twin, outer)
             sides, vertices, changed = sides + 6, vertices + 1, True
         elif changed or bound > longest:

@@ -63,7 +63,7 @@ def test_a_loaded_surface_evaluates_to_the_same_bits(name: str, tmp_path: Path) 
 def test_flips_of_needles_are_saved(tmp_path: Path) -> None:
     """A plate with triangles without height; a file that flips other edges than those of two triangles is refused."""
     surface = pipeline.fit(hard.with_slivers(hard.plate(1, 2, 2), 0.2, 0.0, 2), config(SIZE), REGISTRY).surface
-    assert len(surface.refinement.flips.halfedge) > 100
+    assert len(surface.refinement.log.halfedge) > 100
     save_surface(surface, tmp_path / "s.npz")
     assert_same_bits(surface, load_surface(tmp_path / "s.npz", REGISTRY))
 
