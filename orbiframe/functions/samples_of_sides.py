@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -12,7 +13,6 @@ from orbiframe.functions.samples import Samples, places
 from orbiframe.functions.smooth_samples import lengths, sagittas
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.crease_sides import corner_sides, side_normals
-from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
 from orbiframe.meshes.subdivision import grid_of
 from orbiframe.orbifolds.atlas import Points
@@ -92,7 +92,7 @@ def crease_samples(
     if curved == "bent":
         weights[: len(sides.vertex)] *= np.where(bent[: len(sides.vertex)], 4.0, 1.0)
     if curved != "none":
-        weights[: len(sides.vertex)] += _at_given(sides, facets, area, (fine_height > 0) | (curved == "all"))
+        weights[: len(sides.vertex)] += _at_given(sides, refinement, area, (fine_height > 0) | (curved == "all"))
     bent |= curved == "all"
     normals = np.concatenate([side_normals(flat, sides.corner), _unit(vector_areas(flat))])
     normals[bent] = np.nan
@@ -211,19 +211,19 @@ def crease_of_facets(triangulation: Triangulation, refinement: Bisection) -> Boo
     barycentric = np.zeros((len(facet), 3))
     barycentric[np.arange(len(facet)), corner] = 0.4375 + 1 / 64 + 1 / 1024
     barycentric[np.arange(len(facet)), (corner + 1) % 3] = 1 - barycentric.max(axis=1)
-    fine, weights = refinement.locate_in_facets(facet, barycentric)
+    fine, weights = replace(refinement, coarse=refinement.facets, log=None).locate(facet, barycentric)
     return np.asarray(triangulation.crease[3 * fine + (np.abs(weights).argmin(axis=1) + 1) % 3])
 
 
-def _at_given(sides: Sides, facets: Polyhedron, area: Floats, curved: Bools) -> Floats:
+def _at_given(sides: Sides, refinement: Bisection, area: Floats, curved: Bools) -> Floats:
     """What the sides of given vertices count for beside curved facets, (S,): a third of the area of those about."""
-    given = sides.vertex < len(facets.vertices)
+    facets = refinement.facets
     around = np.bincount(
         facets.tail,
         weights=np.linalg.norm(vector_areas(facets), axis=1)[facets.face] / 3,
         minlength=len(facets.vertices),
     )
-    weight, chosen = np.zeros(len(sides.vertex)), np.flatnonzero(given)
+    weight, chosen = np.zeros(len(sides.vertex)), np.flatnonzero(sides.vertex < len(refinement.coarse.vertices))
     share = _total(sides, np.where(curved, area, 0.0))
     whole = np.bincount(sides.vertex, weights=_total(sides, area), minlength=int(sides.vertex.max()) + 1)
     vertex = sides.vertex[chosen]

@@ -96,7 +96,10 @@ class OrbifoldSurface:
         return np.asarray(self.origin + self.scale * self.basis.values(points, self.coefficients))
 
     def jet(self, points: Points) -> Jet:
-        """Surface points with first and second derivatives. Raises FitError for a basis that has none."""
+        """Surface points with first and second derivatives. Raises FitError for a basis that has none.
+
+        On a crease the derivatives are those of one of its sides, the same for the same point.
+        """
         value, first, second = self._unit_jet(points)
         return Jet(self.origin + self.scale * value, self.scale * first, self.scale * second)
 
