@@ -98,8 +98,8 @@ def _with_edges(
 ) -> tuple[GeodesicTriangulation, list[Chain], Ints]:
     """The domain with its creases, the pieces of creases between sites, and the halfedge of each, -1 for none.
 
-    Pieces that are no edges of the Delaunay triangulation are made edges by flips, if they have at most `forced`
-    vertices.
+    Pieces that are no edges of the Delaunay triangulation are made edges by flips, if all of them have at most `forced`
+    vertices; else the longer ones are to be halved first.
     """
     start = GeodesicTriangulation.of_map(triangulation)
     number = np.empty(len(triangulation.polyhedron.vertices), dtype=np.intp)
@@ -110,7 +110,9 @@ def _with_edges(
     vertex[sites] = found.vertex
     pieces = list(CreaseGraph.of(triangulation.polyhedron, crease, sites).chains(triangulation))
     edges = _edges_under(domain, triangulation, pieces, vertex)
-    missing = [piece for piece, edge in zip(pieces, edges, strict=True) if edge < 0 and len(piece.vertices) <= forced]
+    missing = [piece for piece, edge in zip(pieces, edges, strict=True) if edge < 0]
+    if any(len(piece.vertices) > forced for piece in missing):
+        missing = []
     for piece in missing:
         x, patch = piece.lifted(triangulation), int(triangulation.patch[piece.vertices[0]])
         if (again := with_edge(domain, patch, x[0], x[-1])) is not None:
@@ -168,6 +170,7 @@ class _Placing:
             forced = 2 if turn < _ROUNDS else np.inf
             _, pieces, edges = _with_edges(self.triangulation, self.crease, sites, forced)
             missing = [piece for piece, edge in zip(pieces, edges, strict=True) if edge < 0]
+            missing = [piece for piece in missing if len(piece.vertices) > 2] or missing
             if not missing:
                 moved = self._straightened(pieces)
                 missing = _folded(moved, pieces)
