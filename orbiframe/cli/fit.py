@@ -70,10 +70,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     from orbiframe.fitting.config import Config
     from orbiframe.fitting.parts import fit_parts
 
-    config = Config.load(args.config, overrides(args))
-    for path in config.plugins:
-        registry.add_file(path)
-    config.checked(registry)
+    config = Config.load(args.config, overrides(args), registry)
     _require_destinations(args, config, registry)
     mesh = _repaired(args, config, registry) if repairs_asked(args) else args.mesh
     progress = Progress(quiet=args.quiet)

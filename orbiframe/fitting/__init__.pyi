@@ -1,5 +1,8 @@
 """The public names of orbiframe.fitting, each with the module it lives in."""
 
 from .config import Config as Config
+from .config_text import read_tables as read_tables
+from .content_key import content_key as content_key, file_key as file_key, source_key as source_key
+from .kept_maps import KeptMaps as KeptMaps
 from .parts import fit_parts as fit_parts
 from .pipeline import fit as fit
