@@ -1,6 +1,9 @@
 """The public names of orbiframe.fitting, each with the module it lives in."""
 
 from .config import Config as Config
+from .config_keys import ConfigKey as ConfigKey, config_keys as config_keys
+from .config_schema import config_schema as config_schema
+from .config_template import config_template as config_template, toml_value as toml_value
 from .config_text import read_tables as read_tables
 from .content_key import content_key as content_key, file_key as file_key, source_key as source_key
 from .kept_maps import KeptMaps as KeptMaps
