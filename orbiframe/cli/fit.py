@@ -18,10 +18,10 @@ from orbiframe.files.destination import require_destination
 from orbiframe.files.outputs import require_apart, require_output
 
 if TYPE_CHECKING:
-    from orbiframe.fitting.stages import Progress
     from orbiframe.fitting.config import Config
     from orbiframe.fitting.parts import Parts
     from orbiframe.fitting.pipeline import Result
+    from orbiframe.fitting.stages import Progress
     from orbiframe.meshes.polyhedron import Polyhedron
 
 

@@ -9,6 +9,7 @@ import traceback
 import warnings
 from collections.abc import Sequence
 from importlib.metadata import version
+from itertools import pairwise
 
 from orbiframe.cli import plugin as commands
 from orbiframe.cli.progress import MODES, Progress, compilation_told
@@ -44,7 +45,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _for_programs(arguments: Sequence[str]) -> bool:
     """Whether the standard error stream is to hold lines of JSON, which wrong arguments too are told in."""
-    after = dict(zip(arguments, arguments[1:], strict=False))
+    after = dict(pairwise(arguments))
     return "--progress=json" in arguments or after.get("--progress") == "json"
 
 
@@ -137,7 +138,7 @@ def _report(error: BaseException, debug: bool) -> int:
 
 def _sentence(error: BaseException) -> str:
     if isinstance(error, KeyboardInterrupt):
-        return "interrupted"
+        return str(error) or "interrupted"
     if isinstance(error, MemoryError):
         return "not enough memory; take a smaller mesh, basis or refinement"
     if isinstance(error, OrbiframeError | OSError):

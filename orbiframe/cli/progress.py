@@ -39,8 +39,8 @@ def _in_notebook(stream: TextIO) -> bool:
 class Progress:
     """Shows how far the work is: in the last line of a terminal or notebook, as lines of JSON, or not at all.
 
-    Called as `progress(stage, seconds)`, with None at the beginning of a stage and its seconds at the end; `work` is for
-    many fits. While a stage goes on, something is said every second or so. mode: "auto", shown on terminals and in
+    Called as `progress(stage, seconds)`, with None at the beginning of a stage and its seconds at the end; `work` is
+    for many fits. While a stage goes on, something is said every second or so. mode: "auto", shown on terminals and in
     notebooks only, "json" or "none". See docs/reference/cli.md for the lines of JSON.
     """
 
@@ -113,8 +113,8 @@ class Progress:
             self._json("work", done=done, total=total, what=text, share=round(share, 4), left=_rounded(rest))
             return
         bar = "█" * round(_BAR * share)
-        words = [f"{bar:·<{_BAR}} {done} of {total}", f"{100 * share:.0f} %", in_words(rest), text]
-        self._line.show(", ".join(filter(None, words)))
+        parts = [f"{bar:·<{_BAR}} {done} of {total}", f"{100 * share:.0f} %", in_words(rest), text]
+        self._line.show(", ".join(filter(None, parts)))
 
     def _tick_from_now(self) -> None:
         if self._ticker is None:
@@ -129,9 +129,9 @@ class Progress:
             spent = round(time.monotonic() - self._began, 1)
             self._json("alive", stage=self._stage, seconds=spent, **self._estimate())
         elif self._stage and self._line:
-            spent = f"{time.monotonic() - self._began:.0f} s"
-            share = f"{100 * self._share.share:.0f} % of the fit done"
-            words = ", ".join(filter(None, [spent, share, in_words(self._share.left)]))
+            percent = 100 * self._share.share
+            parts = [f"{time.monotonic() - self._began:.0f} s", f"{percent:.0f} % of the fit done"]
+            words = ", ".join(filter(None, [*parts, in_words(self._share.left)]))
             self._line.show(f"{self._stage} … {words}")
 
     def _estimate(self) -> dict[str, Any]:

@@ -66,11 +66,6 @@ class FitShare:
         return left(self.share, time.monotonic() - self._begun)
 
 
-def left(self) -> float | None:
-    """Seconds that the rest will take, about; None while nobody knows."""
-    return left(self._share, time.monotonic() - self._begun)
-
-
 def left(share: float, elapsed: float) -> float | None:
     """Seconds that the rest of a work will take if it goes on like this; None while nobody knows."""
     if share < _KNOWN_SHARE or elapsed < _KNOWN_SECONDS:

@@ -12,7 +12,6 @@ from typing import TextIO
 
 from orbiframe.components.shown_text import shown
 
-
 _for_programs = False
 _writing = threading.Lock()
 

@@ -4,6 +4,7 @@ from .destination import (
     require_destination as require_destination,
     require_picture as require_picture,
 )
+from .file_lock import file_lock as file_lock
 from .gate import export as export, read as read, write as write, write_elements as write_elements
 from .outputs import (
     output as output,

@@ -64,8 +64,8 @@ def load_map(path: Path, polyhedron: Polyhedron, geometry: Geometry) -> Triangul
             about["orientable"],
             float(arrays["area"]),
         )
-        places = (arrays[name] for name in _PLACES)
-        found = Triangulation(orbifold, polyhedron, *places, about["group"], about["weights"])
+        patch, points, transition = (arrays[name] for name in _PLACES)
+        found = Triangulation(orbifold, polyhedron, patch, points, transition, about["group"], about["weights"])
         require_map(found)
     except FormatError:
         raise

@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from annotated_types import Ge, Gt
 
@@ -83,8 +83,10 @@ class Config:
     mesh: the reader, "auto" by the file suffix; group: "mesh" takes the group from the mesh; marking: cuts the mesh
     open for a named group; map: "auto" takes the parametrizer that fits the geometry and the group; shape: changes
     the map so that faces become regular, "none" leaves it as it is; basis; fitter.
-    places: where each "table.key" was written, for error messages.
+    places: where each "table.key" was written, for error messages. NAMES: of all tables.
     """
+
+    NAMES: ClassVar[tuple[str, ...]] = TABLES
 
     steps: Mapping[str, Step]
     output: Output = field(default_factory=Output)

@@ -18,11 +18,11 @@ from orbiframe.plugin import Component
 TABLE_MEANINGS = {
     "mesh": "The file.",
     "group": "Where the group comes from.",
-    "marking": "Only for a group with a name: the mesh is cut open along loops, and the word of its boundary goes to the "
-    "group.",
+    "marking": "Only for a group with a name: the mesh is cut open along loops, and the word of its boundary goes"
+    " to the group.",
     "map": "The map from the mesh to X/H.",
-    "shape": "Only where an optimizer is named: the map is changed so that faces become regular polygons in X/H, as far "
-    "as the surface allows.",
+    "shape": "Only where an optimizer is named: the map is changed so that faces become regular polygons in X/H, "
+    "as far as the surface allows.",
     "data": "What the mesh means.",
     "basis": "The functions.",
     "fitter": "How their coefficients are found.",
@@ -32,24 +32,26 @@ SELECTOR_MEANINGS = {
     "mesh": "name of a reader; auto takes the one of the suffix",
     "group": "where the group comes from; with mesh, the one that fits the mesh is found; else the name of a group",
     "marking": "name of a marker; auto takes tree-cotree",
-    "map": "name of a parametrizer; auto takes sphere for χ > 0 and harmonic for χ ≤ 0, or equivariant if the group has a "
-    "name",
+    "map": "name of a parametrizer; auto takes sphere for χ > 0 and harmonic for χ ≤ 0, or equivariant if the "
+    "group has a name",
     "shape": "name of an optimizer, such as regular-faces; none: the map stays as it is",
     "basis": "name of a basis",
-    "fitter": "name of a fitter: sliding, least-squares for the linear fit that sliding begins with, or smoothing, whose "
-    "fairing cross-validation finds",
+    "fitter": "name of a fitter: sliding, least-squares for the linear fit that sliding begins with, or "
+    "smoothing, whose fairing cross-validation finds",
 }
 _RESULT_MEANINGS = {
-    "data.means": "what the mesh means: facets, the polyhedron is the truth; smooth, its vertices lie on a smooth surface; "
-    "semi-smooth, so they do where facets are curved; auto decides by the share of its bending that lies in edges of more "
-    "than 40°: smooth up to 20 %, facets from 45 % on",
+    "data.means": "what the mesh means: facets, the polyhedron is the truth; smooth, its vertices lie on a smooth"
+    " surface; semi-smooth, so they do where facets are curved; auto decides by the share of its "
+    "bending that lies in edges of more than 40°: smooth up to 20 %, facets from 45 % on",
     "data.lift": "a smooth mesh is mapped a second time, with its vertices lifted onto a first surface",
-    "data.noise": "root mean square error of each coordinate of the vertices of a smooth mesh, relative to the diagonal of "
-    "the bounding box; if not given, the fairing is found from the vertices by cross-validation",
-    "output.refine": "every triangle of the input becomes refine² triangles; if not given, the refined mesh is cut, about "
-    "40 000 triangles in all, of even size",
-    "output.tolerance": "largest root mean square error, relative to the diagonal of the bounding box; if given, functions "
-    "are added where the error is, from 500 up to 16 000 in all, until it is reached",
+    "data.noise": "root mean square error of each coordinate of the vertices of a smooth mesh, relative to the "
+    "diagonal of the bounding box; if not given, the fairing is found from the vertices by cross-"
+    "validation",
+    "output.refine": "every triangle of the input becomes refine² triangles; if not given, the refined mesh is "
+    "cut, about 40 000 triangles in all, of even size",
+    "output.tolerance": "largest root mean square error, relative to the diagonal of the bounding box; if given, "
+    "functions are added where the error is, from 500 up to 16 000 in all, until it is "
+    "reached",
     "output.max_error": "largest error anywhere, likewise; both may be given",
 }
 PLUGINS_MEANING = "Python files with components, relative to this file"
@@ -88,8 +90,8 @@ def _step_keys(table: str, registry: Registry) -> Iterator[ConfigKey]:
     for component in components:
         for option in _options(component):
             meaning = component.meanings.get(option.name, "")
-            default = None if option.required else option.default
-            yield ConfigKey(table, option.name, option.annotation, default, meaning, component.name)
+            value = None if option.required else option.default
+            yield ConfigKey(table, option.name, option.annotation, value, meaning, component.name)
 
 
 def _options(component: Component) -> list[Option]:

@@ -39,11 +39,19 @@ def _table(keys: list[ConfigKey], meaning: str) -> Schema:
 def _merged(keys: list[ConfigKey]) -> Schema:
     """The schema of a key that several components may have: what any of them takes."""
     forms = _distinct(_form(key) for key in keys)
-    meanings = "; ".join(_distinct(key.meaning for key in keys if key.meaning))
+    meanings = "; ".join(_meanings(keys))
     found = forms[0] if len(forms) == 1 else {"anyOf": forms}
     defaults = _distinct(key.default for key in keys)
     default = {"default": defaults[0]} if len(defaults) == 1 and defaults[0] is not None else {}
     return {**found, **({"description": meanings} if meanings else {}), **default}
+
+
+def _meanings(keys: list[ConfigKey]) -> list[str]:
+    """What a key means; where that differs, with the component before it."""
+    found = _distinct(key.meaning for key in keys if key.meaning)
+    if len(found) < 2:
+        return found
+    return [m if m.startswith(key.component) else f"{key.component}: {m}" for key in keys if (m := key.meaning)]
 
 
 def _form(key: ConfigKey) -> Schema:

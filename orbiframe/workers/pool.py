@@ -15,6 +15,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from orbiframe.workers.worker_process import Task
@@ -65,7 +66,7 @@ def work(
 def _here(items: Iterable[Any], task: Task, told: Listener) -> Iterator[Outcome]:
     for item in items:
         try:
-            outcome = Outcome(item, task(item, lambda stage, seconds, item=item: told(item, stage, seconds)))
+            outcome = Outcome(item, task(item, partial(told, item)))
         except Exception as error:
             outcome = Outcome(item, error=error)
         yield outcome

@@ -11,6 +11,7 @@ import pickle
 import signal
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, BinaryIO
 
 from orbiframe.compiled import compilation
@@ -28,18 +29,16 @@ def main() -> None:
     sys.path[:0] = [entry for entry in pickle.load(source) if entry not in sys.path]
     make, arguments = pickle.load(source)
     task: Task = make(*arguments)
-    with compilation.heard(_Compiling(target)):
+    with compilation.heard(_Compiling(target)), suppress(EOFError, BrokenPipeError):  # nobody asks any more
         while True:
-            try:
-                item = pickle.load(source)
-            except EOFError:
-                return
-            _send(target, *_answer(task, item, target))
+            _send(target, *_answer(task, pickle.load(source), target))
 
 
 def _answer(task: Task, item: Any, target: BinaryIO) -> tuple[str, Any]:
     try:
         return "done", task(item, lambda stage, seconds: _send(target, "told", (stage, seconds)))
+    except BrokenPipeError:
+        raise
     except Exception as error:
         return "raised", error
 

@@ -22,8 +22,8 @@ def orbiframe_components() -> list[Component]:
             "chi <= 0: group from a conformal metric or a circle packing, harmonic map in the atlas",
             meanings={
                 "metric": "χ < 0: the metric that gives the group; vertex-scaling is conformal to the mesh, "
-                "circle-packing exists for every mesh; auto scales, and packs where that fails or leaves a median angle "
-                "distortion above 1.2",
+                "circle-packing exists for every mesh; auto scales, and packs where that fails or "
+                "leaves a median angle distortion above 1.2",
                 "weights": _WEIGHTS.format(name="harmonic"),
                 "even_areas": _EVEN_AREAS,
             },
@@ -51,8 +51,8 @@ def orbiframe_components() -> list[Component]:
             "orbiframe_parametrizers.regular_faces:regular_faces",
             "faces in X/H as regular as possible, squares from quadrilaterals, by Newton on a shape energy",
             meanings={
-                "group": "auto looks for a group that suits regular faces, where that of the map comes from the mesh and "
-                "χ ≤ 0; kept never does",
+                "group": "auto looks for a group that suits regular faces, where that of the map comes from the "
+                "mesh and χ ≤ 0; kept never does",
                 "area": "how much equal areas count against shape",
             },
         ),
