@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from orbiframe.errors import FormatError
-from orbiframe.files.file_lock import file_lock
+from orbiframe.files.lock import file_lock
 from orbiframe.files.map_file import load_map, save_map
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.planes.geometry import Geometry

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from orbiframe.errors import MapError
 from orbiframe.fitting.config import Config
-from orbiframe.fitting.content_key import content_key, mesh_key, source_key
+from orbiframe.fitting.content import content_key, mesh_key, source_key
 from orbiframe.fitting.stages import Stages
 from orbiframe.groups.marked_group import MarkedGroup
 from orbiframe.meshes.bisection import Bisection, bisected, edge_length_for

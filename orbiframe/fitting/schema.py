@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from orbiframe.components.registry import Registry
-from orbiframe.fitting.config_keys import PLUGINS_MEANING, TABLE_MEANINGS, ConfigKey, config_keys
+from orbiframe.fitting.keys import PLUGINS_MEANING, TABLE_MEANINGS, ConfigKey, config_keys
 
 Schema = dict[str, Any]
 

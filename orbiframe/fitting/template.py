@@ -9,7 +9,7 @@ from typing import Any
 
 from orbiframe.components.registry import Registry
 from orbiframe.fitting.config import STEPS
-from orbiframe.fitting.config_keys import PLUGINS_MEANING, TABLE_MEANINGS, ConfigKey, config_keys
+from orbiframe.fitting.keys import PLUGINS_MEANING, TABLE_MEANINGS, ConfigKey, config_keys
 from orbiframe.fitting.mapping import PARAMETRIZER
 
 _WIDTH = 100
