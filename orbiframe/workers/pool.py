@@ -48,16 +48,17 @@ def work(
     arguments: tuple[Any, ...] = (),
     *,
     workers: int = 1,
+    apart: bool = False,
     told: Listener = lambda *_: None,
 ) -> Iterator[Outcome]:
     """The outcome of a task for every item, in the order in which they come.
 
     make(*arguments), called in each process, is the task: called as task(item, tell), where tell(stage, seconds) may be
     called at any time and reaches `told(item, stage, seconds)` here. With one worker all happens in this process,
-    one item after the other; else in others, and functions, arguments, items and results are pickled. Whatever ends
+    one item after the other; else, or if they are to be apart, in others, and functions, arguments, items and results are pickled. Whatever ends
     the iteration ends the processes.
     """
-    if workers == 1:
+    if workers == 1 and not apart:
         yield from _here(items, make(*arguments), told)
     else:
         yield from _Pool(iter(items), (make, arguments), told).outcomes(workers)

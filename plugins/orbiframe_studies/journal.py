@@ -110,7 +110,7 @@ class Journal:
 def _entry(line: bytes) -> Entry | None:
     try:
         found = json.loads(line)
-        whole = all(isinstance(found[name], kind) for name, kind in _NEEDED.items()) and line.endswith(b"\n")
+        whole = all(isinstance(found[name], kind) for name, kind in _NEEDED.items())
     except (ValueError, KeyError, TypeError, RecursionError):
         return None
     return found if whole and found["status"] in ("done", "failed", "lost") else None

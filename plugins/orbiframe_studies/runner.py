@@ -58,10 +58,11 @@ class Summary:
 
 
 def processes(count: int) -> Hands:
-    """Fits by so many processes of this machine; by this one for 1."""
+    """Fits by so many processes of this machine; by this one for 1, unless their memory is limited."""
 
     def hands(fits: Source, registry: Registry, terms: Terms, told: Told) -> Iterator[Outcome]:
-        yield from work(fits, fit_task, (registry, terms), workers=count, told=told)
+        apart = terms.memory is not None
+        yield from work(fits, fit_task, (registry, terms), workers=count, apart=apart, told=told)
 
     return hands
 
