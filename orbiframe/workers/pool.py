@@ -13,16 +13,19 @@ import queue
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from orbiframe.workers.memory import resident_memory
 from orbiframe.workers.worker_process import Task
 
 _START = "from orbiframe.workers.worker_process import main; main()"
 _ATTEMPTS = 2
-_PATIENCE = 0.2
+_PATIENCE, _GLANCE = 0.2, 0.05
+_TOO_MUCH = "for taking more memory than"
 
 Listener = Callable[[Any, str, float | None], None]
 
@@ -48,20 +51,21 @@ def work(
     arguments: tuple[Any, ...] = (),
     *,
     workers: int = 1,
-    apart: bool = False,
+    memory: int | None = None,
     told: Listener = lambda *_: None,
 ) -> Iterator[Outcome]:
     """The outcome of a task for every item, in the order in which they come.
 
     make(*arguments), called in each process, is the task: called as task(item, tell), where tell(stage, seconds) may be
-    called at any time and reaches `told(item, stage, seconds)` here. With one worker all happens in this process,
-    one item after the other; else, or if they are to be apart, in others, and functions, arguments, items and results are pickled. Whatever ends
-    the iteration ends the processes.
+    called at any time and reaches `told(item, stage, seconds)` here. With one worker all happens in this process, one
+    item after the other; else in others, and functions, arguments, items and results are pickled. memory: bytes that a
+    process may take, in one apart even for one worker; one that takes more ends, and its item is lost. Whatever ends the
+    iteration ends the processes.
     """
-    if workers == 1 and not apart:
+    if workers == 1 and memory is None:
         yield from _here(items, make(*arguments), told)
     else:
-        yield from _Pool(iter(items), (make, arguments), told).outcomes(workers)
+        yield from _Pool(iter(items), (make, arguments), told, memory).outcomes(workers)
 
 
 def _here(items: Iterable[Any], task: Task, told: Listener) -> Iterator[Outcome]:
@@ -76,10 +80,13 @@ def _here(items: Iterable[Any], task: Task, told: Listener) -> Iterator[Outcome]
 class _Pool:
     """Threads, one for each process, that take items and put what they hear into one queue."""
 
-    def __init__(self, items: Iterator[Any], task: tuple[Any, tuple[Any, ...]], told: Listener) -> None:
+    def __init__(
+        self, items: Iterator[Any], task: tuple[Any, tuple[Any, ...]], told: Listener, memory: int | None
+    ) -> None:
         self._items, self._task, self._told = items, pickle.dumps(task), told
         self._taking, self._heard = threading.Lock(), queue.SimpleQueue[Any]()
         self._processes: set[subprocess.Popen[bytes]] = set()
+        self._memory, self._greedy = memory, set[int]()
         self._over = False
 
     def outcomes(self, workers: int) -> Iterator[Outcome]:
@@ -87,6 +94,8 @@ class _Pool:
         threads = [threading.Thread(target=self._serve, daemon=True) for _ in range(workers)]
         for thread in threads:
             thread.start()
+        if self._memory is not None:
+            threading.Thread(target=self._watch, args=(self._memory,), daemon=True).start()
         try:
             while any(thread.is_alive() for thread in threads) or not self._heard.empty():
                 try:
@@ -108,6 +117,15 @@ class _Pool:
             process.kill()
         for thread in threads:
             thread.join()
+
+    def _watch(self, most: int) -> None:
+        """End processes that take too much."""
+        while not self._over:
+            for process in list(self._processes):
+                if resident_memory(process.pid) > most:
+                    self._greedy.add(process.pid)
+                    process.kill()
+            time.sleep(_GLANCE)
 
     def _next(self) -> Iterator[Any]:
         """One item, or none."""
@@ -139,7 +157,7 @@ class _Pool:
                 process = None
                 if self._over:
                     return None
-                if attempt == _ATTEMPTS:
+                if attempt == _ATTEMPTS or ended.startswith(_TOO_MUCH):
                     self._heard.put(Outcome(item, lost=ended))
             else:
                 return process
@@ -180,4 +198,7 @@ class _Pool:
                     stream.close()
         status = process.wait()
         self._processes.discard(process)
+        if process.pid in self._greedy:
+            self._greedy.discard(process.pid)
+            return f"{_TOO_MUCH} {(self._memory or 0) / 1e9:g} GB"
         return f"by signal {-status}" if status < 0 else f"with status {status}"

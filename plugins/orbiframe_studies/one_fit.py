@@ -16,7 +16,7 @@ import numpy as np
 from orbiframe import Config, FormatError, OrbiframeError, Polyhedron, Registry, read, write
 from orbiframe.files import save_surface
 from orbiframe.fitting import KeptMaps, Parts, fit_parts
-from orbiframe.workers import limit_memory, peak_memory, reset_peak
+from orbiframe.workers import peak_memory, reset_peak
 from orbiframe_studies.arrays import write_arrays
 from orbiframe_studies.machine import machine
 from orbiframe_studies.plan import Fit
@@ -24,7 +24,7 @@ from orbiframe_studies.study_folder import StudyFolder
 
 Tell = Callable[[str, float | None], None]
 Entry = dict[str, Any]
-_GB = 10**9
+_MEMORY = "it needs more memory than there is; it is tried again when the study is run again"
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +39,6 @@ class Terms:
 
 def fit_task(registry: Registry, terms: Terms) -> Callable[[Fit, Tell], Entry]:
     """What a worker does for each fit; raises only what stops the whole study, as a disk that is full."""
-    if terms.memory is not None:
-        limit_memory(round(terms.memory * _GB))
     folder = StudyFolder(terms.folder)
     maps = KeptMaps(folder.maps)
 
@@ -82,7 +80,7 @@ def _attempted(fit: Fit, registry: Registry, terms: Terms, maps: KeptMaps, tell:
             warnings.filterwarnings("always", category=UserWarning)
             parts = _fitted(fit, registry, terms.noise, maps, tell)
     except MemoryError:
-        return {"status": "lost", "error": {"type": "MemoryError", "text": _memory(terms.memory)}}
+        return {"status": "lost", "error": {"type": "MemoryError", "text": _MEMORY}}
     except (OrbiframeError, Exception) as error:
         return {"status": "failed", "error": {"type": type(error).__name__, "text": str(error)}}
     report = {name: value for name, value in parts.report.items() if name not in ("seconds", "versions")}
@@ -104,11 +102,6 @@ def noisy(polyhedron: Polyhedron, noise: float, seed: int) -> Polyhedron:
     """The polyhedron with normal noise on every coordinate of its vertices, relative to the diagonal of its box."""
     moves = np.random.default_rng(seed).normal(scale=noise * polyhedron.diagonal, size=polyhedron.vertices.shape)
     return polyhedron.with_vertices(polyhedron.vertices + moves)
-
-
-def _memory(limit: float | None) -> str:
-    allowed = "there is" if limit is None else f"the {limit:g} GB of study.memory"
-    return f"it needs more memory than {allowed}; it is tried again when the study is run again"
 
 
 def _keep(parts: Parts, fit: Fit, keep: tuple[str, ...], folder: StudyFolder, registry: Registry) -> None:

@@ -20,6 +20,7 @@ from orbiframe_studies.study_folder import StudyFolder
 from orbiframe_studies.table import write_tables
 
 Entry = dict[str, Any]
+_GB = 10**9
 Told = Callable[[Fit, str, float | None], None]
 
 
@@ -61,8 +62,8 @@ def processes(count: int) -> Hands:
     """Fits by so many processes of this machine; by this one for 1, unless their memory is limited."""
 
     def hands(fits: Source, registry: Registry, terms: Terms, told: Told) -> Iterator[Outcome]:
-        apart = terms.memory is not None
-        yield from work(fits, fit_task, (registry, terms), workers=count, apart=apart, told=told)
+        memory = None if terms.memory is None else round(terms.memory * _GB)
+        yield from work(fits, fit_task, (registry, terms), workers=count, memory=memory, told=told)
 
     return hands
 
@@ -138,7 +139,7 @@ class _Running:
 def _entry(outcome: Outcome) -> Entry:
     """The entry of an outcome; raises an error that is none of the fit."""
     if outcome.lost:
-        text = f"the process that did it ended {outcome.lost}, twice; it may need more memory than there is"
+        text = f"the process that did it ended {outcome.lost}; it is tried again when the study is run again"
         error = {"type": "Lost", "text": text}
         return {"key": outcome.item.key, "status": "lost", "error": error, "timing": {}}
     if isinstance(outcome.error, OrbiframeError | OSError):

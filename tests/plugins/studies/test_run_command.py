@@ -96,14 +96,8 @@ def test_optuna_chooses_the_same_again(orbiframe, tmp_path, monkeypatch):
     study = written(tmp_path, text)
 
     def fitted(fit, *_):
-        class Parts:
-            report = {
-                "fit": {"rms": (fit.tables["basis"]["width"] - 2) ** 2, "size": 10},
-                "seconds": {},
-                "versions": {},
-            }
-
-        return Parts()
+        error = (fit.tables["basis"]["width"] - 2) ** 2
+        return SimpleNamespace(report={"fit": {"rms": error, "size": 10}, "seconds": {}, "versions": {}})
 
     monkeypatch.setattr(one_fit, "_fitted", fitted)
     tables = []
