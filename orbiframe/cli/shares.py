@@ -23,6 +23,8 @@ _OPTIONAL = ("shape",)
 _ALL = sum(weight for stage, weight in _WEIGHTS.items() if stage not in _OPTIONAL)
 # Before that much is done nobody knows how long the rest takes.
 _KNOWN_SHARE, _KNOWN_SECONDS = 0.02, 1.0
+# Seconds for a unit of weight, at least.
+_LEAST_PACE = 0.01
 
 
 class FitShare:
@@ -50,7 +52,7 @@ class FitShare:
         """Between 0 and 1; while a stage goes on it grows, by less and less."""
         now = time.monotonic()
         weight, spent = _WEIGHTS.get(self._stage.partition(" ")[0], 0), now - self._stage_begun
-        expected = weight * (self._stage_begun - self._begun) / max(self._done, 1.0)
+        expected = weight * max((self._stage_begun - self._begun) / max(self._done, 1.0), _LEAST_PACE)
         grown = weight * spent / (spent + expected) if weight and spent > 0 else 0.0
         number, _, count = self._part.partition("/")
         parts = int(count) if number.isdecimal() and count.isdecimal() else 1

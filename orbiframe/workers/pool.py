@@ -59,8 +59,8 @@ def work(
     make(*arguments), called in each process, is the task: called as task(item, tell), where tell(stage, seconds) may be
     called at any time and reaches `told(item, stage, seconds)` here. With one worker all happens in this process, one
     item after the other; else in others, and functions, arguments, items and results are pickled. memory: bytes that a
-    process may take, in one apart even for one worker; one that takes more ends, and its item is lost. Whatever ends the
-    iteration ends the processes.
+    process may take, in one apart even for one worker; one that takes more ends, and its item is lost. Whatever ends
+    the iteration ends the processes.
     """
     if workers == 1 and memory is None:
         yield from _here(items, make(*arguments), told)
