@@ -2,4 +2,4 @@
 
 from .memory import peak_memory as peak_memory, reset_peak as reset_peak, resident_memory as resident_memory
 from .pool import Outcome as Outcome, processors as processors, work as work
-from .worker_process import COMPILING as COMPILING, Task as Task, Tell as Tell
+from .worker_process import COMPILING as COMPILING
