@@ -23,10 +23,11 @@ class KeptMaps:
 
     Any number of processes may share the folder: of those that want the same map at once, one computes it and the
     others wait. A file that is damaged is made again; where none can be written, maps are computed as without it.
+    folder: None for maps in memory only.
     computed, kept: how many maps were computed here, and how many were there.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path | None) -> None:
         self.folder, self.computed, self.kept = folder, 0, 0
         self._memory: OrderedDict[str, Triangulation] = OrderedDict()
 
@@ -35,19 +36,21 @@ class KeptMaps:
     ) -> Triangulation:
         """The map of a mesh with this key: from memory, from its file, or made now."""
         found = self._memory.pop(key, None)
-        if found is None:
-            found = self._of_file_or_made(key, mesh, geometry, make)
-        else:
+        if found is not None:
             self.kept += 1
+        elif self.folder is None:
+            found = make()
+            self.computed += 1
+        else:
+            found = self._of_file_or_made(self.folder / key[:2] / f"{key}.npz", mesh, geometry, make)
         self._memory[key] = replace(found, polyhedron=mesh)  # without what was derived from it
         while len(self._memory) > _IN_MEMORY:
             self._memory.popitem(last=False)
         return self._memory[key]
 
     def _of_file_or_made(
-        self, key: str, mesh: Polyhedron, geometry: Geometry, make: Callable[[], Triangulation]
+        self, path: Path, mesh: Polyhedron, geometry: Geometry, make: Callable[[], Triangulation]
     ) -> Triangulation:
-        path = self.folder / key[:2] / f"{key}.npz"
         with suppress(FormatError):
             return self._read(path, mesh, geometry)
         with ExitStack() as held:

@@ -29,18 +29,19 @@ _MEMORY = "it needs more memory than there is; it is tried again when the study 
 
 @dataclass(frozen=True, slots=True)
 class Terms:
-    """What all fits of a study have in common for a worker: the folder, noise, what is kept, memory in GB."""
+    """What all fits of a study have in common for a worker: the folder, noise, what is kept, maps too, memory in GB."""
 
     folder: Path
     noise: float | None
     keep: tuple[str, ...]
+    maps: bool
     memory: float | None
 
 
 def fit_task(registry: Registry, terms: Terms) -> Callable[[Fit, Tell], Entry]:
     """What a worker does for each fit; raises only what stops the whole study, as a disk that is full."""
     folder = StudyFolder(terms.folder)
-    maps = KeptMaps(folder.maps)
+    maps = KeptMaps(folder.maps if terms.maps else None)
 
     def task(fit: Fit, tell: Tell) -> Entry:
         _require_folder(folder)

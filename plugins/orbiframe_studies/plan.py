@@ -64,6 +64,11 @@ class Plan:
         return self.chain_count * self.chain_length
 
     @property
+    def fits_per_mesh(self) -> int:
+        """How many fits a mesh has at most."""
+        return self.expected // max(len(self.study.meshes), 1)
+
+    @property
     def chain_count(self) -> int:
         """How many chains there are."""
         study = self.study

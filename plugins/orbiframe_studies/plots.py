@@ -29,6 +29,11 @@ def _pyplot() -> Any:
 
 def error_plot(series: Sequence[Series], measure: str) -> str:
     """Errors against unknowns, with the line of the fitted order, as SVG."""
+    return _svg(error_figure(series, measure))
+
+
+def error_figure(series: Sequence[Series], measure: str) -> Any:
+    """The same as a figure of matplotlib."""
     figure, axes = _axes(9, 5.5)
     for number, each in enumerate(series):
         order = "" if each.order is None else f", order {each.order:.1f}"
@@ -40,7 +45,7 @@ def error_plot(series: Sequence[Series], measure: str) -> str:
     axes.grid(True, which="both", alpha=0.25)
     if series:
         axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
-    return _svg(figure)
+    return figure
 
 
 def time_plot(names: Sequence[str], seconds: Sequence[dict[str, float]]) -> str:

@@ -79,7 +79,9 @@ def run_study(
     with Journal(folder.journal) as journal:
         _forget(journal, retry)
         running = _Running(study, plan, journal, progress)
-        terms = Terms(folder.path.absolute(), study.settings.noise, study.settings.keep, study.settings.memory)
+        settings = study.settings
+        maps = settings.maps == "kept" or (settings.maps == "auto" and plan.fits_per_mesh > 1)
+        terms = Terms(folder.path.absolute(), settings.noise, settings.keep, maps, settings.memory)
         try:
             for outcome in hands(running.source, plan.registry, terms, running.told):
                 running.take(outcome)

@@ -23,7 +23,8 @@ class Settings:
 
     meshes: files or patterns, relative to the file; name: of the study, None for that of the file; seeds: every fit is
     done once for each; noise: normal noise on each coordinate of the vertices, of this size relative to the diagonal of
-    the box, by the seed; keep: what is kept of each fit beside its row; memory: GB that one process may take.
+    the box, by the seed; keep: what is kept of each fit beside its row; maps: whether maps to X/H are kept for other
+    fits, "auto" where a mesh has several; memory: GB that one process may take.
     """
 
     meshes: Annotated[tuple[str, ...], MinLen(1)]
@@ -31,6 +32,7 @@ class Settings:
     seeds: tuple[Annotated[int, Ge(0)], ...] = ()
     noise: Annotated[float, Gt(0), Le(1)] | None = None
     keep: tuple[Keep, ...] = ()
+    maps: Literal["auto", "kept", "none"] = "auto"
     memory: Annotated[float, Gt(0)] | None = None
 
 

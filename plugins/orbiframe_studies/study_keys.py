@@ -16,6 +16,7 @@ MEANINGS = {
     "study.seeds": "every fit is done once for each; they go to components with an option seed, and to the noise",
     "study.noise": "normal noise on each coordinate of the vertices, of this size relative to the diagonal of the box",
     "study.keep": "what is kept of each fit beside its row: arrays (HDF5), surface (.npz), mesh (.ply)",
+    "study.maps": "kept: maps to X/H are kept for other fits of the mesh; none: they are not; auto: if it has several",
     "study.memory": "GB that one process may take; a fit that needs more is recorded as lost",
     "until.below": "what the measure has to fall to",
     "until.key": "the key that grows",

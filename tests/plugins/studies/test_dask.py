@@ -90,5 +90,9 @@ def test_what_travels_is_small():
 
     from orbiframe import Registry
 
-    sent = Registry.discover(), Terms(Path("/a"), None, (), None), Fit("k" * 64, Path("/b"), "b", {}, "", {}, None)
+    sent = (
+        Registry.discover(),
+        Terms(Path("/a"), None, (), True, None),
+        Fit("k" * 64, Path("/b"), "b", {}, "", {}, None),
+    )
     assert len(pickle.dumps(sent)) < 3000

@@ -72,6 +72,14 @@ def test_too_little_memory_is_tried_again(orbiframe, tmp_path, monkeypatch):
     assert json.loads(orbiframe("run", study, "--workers", 1, "--json").out)["done"] == 1
 
 
+@pytest.mark.parametrize(("text", "kept"), [("auto", False), ("kept", True)])
+def test_maps_of_meshes_with_one_fit_are_kept_if_that_is_asked_for(orbiframe, tmp_path, text, kept):
+    study = written(tmp_path, "[basis]\nsize = 10\n")
+    study.write_text(study.read_text().replace('["cube.off"]', f'["cube.off"]\nmaps = "{text}"'))
+    assert json.loads(orbiframe("run", study, "--workers", 1, "--json").out)["maps"] == 1
+    assert (tmp_path / "quick" / "maps").exists() is kept
+
+
 def test_noise_moves_the_vertices_by_the_seed(orbiframe, tmp_path):
     study = written(tmp_path, "[basis]\nsize = 10\n")
     study.write_text(study.read_text().replace('["cube.off"]', '["cube.off"]\nseeds = [0, 1]\nnoise = 0.001'))
