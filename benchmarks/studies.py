@@ -82,9 +82,8 @@ def overhead() -> None:
             with opened(path.with_suffix(""), "study", path) as folder:
                 found = run_study(plan.study, plan, folder, processes(1), SimpleNamespace(work=lambda *_: None))
             wall, own = time.perf_counter() - begun, time.process_time() - used
-        print(
-            f"overhead  {found.new} fits: {1000 * wall / count:.2f} ms a fit, {1000 * own / count:.2f} ms of processor"
-        )
+        each = [f"{1000 * seconds / count:.2f} ms" for seconds in (wall, own)]
+        print(f"overhead  {found.new} fits: {each[0]} a fit, {each[1]} of the processor")
 
 
 def through_processes() -> None:
