@@ -26,9 +26,11 @@ def read_study(path: Path, overrides: Overrides = ()) -> Study:
     tables, places = read_tables(path)
     if "study" not in tables:
         raise ConfigError(f"{path}: this is no study, there is no table [study]; write [study] with meshes = [...]")
+    given = set()
     for table, key, value, place in override_items(overrides):
         places[f"{table}.{key}"] = place
         tables[table] = {**_mapping(tables, table, places), key: value}
+        given.add(f"{table}.{key}")
     _require_tables(tables, places)
     settings = Settings(**checked_options(Settings, _mapping(tables, "study", places), "study", places))
     common = {name: value for name, value in tables.items() if name not in TABLES}
@@ -45,7 +47,7 @@ def read_study(path: Path, overrides: Overrides = ()) -> Study:
         config.plugins,
         places,
     )
-    _require_single(study)
+    _require_single(study, given)
     _require_seeds(study)
     return study
 
@@ -87,10 +89,11 @@ def _meshes(patterns: tuple[str, ...], folder: Path, places: Mapping[str, str]) 
             raise ConfigError(f"{place_of('study.meshes', places)}there is no mesh {folder / pattern}.{near}")
         if not found:
             raise ConfigError(f"{place_of('study.meshes', places)}no file is like '{pattern}' in {folder}")
-        for path in map(Path, found):
-            if path not in seen and path.is_file():
-                seen.add(path)
-                yield path
+        files = [path for path in map(Path, found) if path.is_file()]
+        if not files:
+            raise ConfigError(f"{place_of('study.meshes', places)}{found[0]} is no regular file; name meshes")
+        yield from (path for path in files if path not in seen)
+        seen.update(files)
 
 
 def _flat(table: Mapping[str, Any], title: str, places: Mapping[str, str]) -> Iterator[tuple[str, Any]]:
@@ -194,9 +197,9 @@ def _span(name: str, value: Any, places: Mapping[str, str]) -> dict[str, Any]:
     return dict(value)
 
 
-def _require_single(study: Study) -> None:
-    """Raise ConfigError where one key is set in two ways, of which only one could win."""
-    owners: dict[str, str] = {}
+def _require_single(study: Study, given: set[str]) -> None:
+    """Raise ConfigError where one key is set in two ways, of which only one could win; given: by overrides."""
+    owners = {key: study.places[key] for key in given if key.partition(".")[0] in Config.NAMES}
     parts = [("[sweep]", study.sweep), ("[search]", study.search.space if study.search else {})]
     parts += [("[until]", {study.until.key: None} if study.until else {})]
     parts += [("[[case]]", {key: None for case in study.cases for key in case.options})]

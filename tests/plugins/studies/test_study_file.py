@@ -133,6 +133,7 @@ SETTINGS = [
     ('["*.obj"]', ["no file is like '*.obj'"]),
     ("[]", ["study.meshes = []"]),
     ('"cube.off"', ["study.meshes = 'cube.off'"]),
+    ('["/dev/null"]', ["/dev/null is no regular file"]),
     ('["cube.off"]\nseeds = [1, 1]\nnoise = 0.1', ["study.seeds has a number twice"]),
     ('["cube.off"]\nseeds = [1]', ["quick.toml, line 4", "option 'seed'", "study.noise"]),
     ('["cube.off"]\nnoise = 0.1', ["study.noise needs seeds"]),
@@ -150,6 +151,14 @@ def test_what_is_wrong_with_the_settings_is_said(tmp_path, value, said):
         plan_of(path)
     for words in said:
         assert words in str(caught.value)
+
+
+def test_an_override_of_what_is_varied_is_refused_and_one_of_the_sweep_wins(tmp_path):
+    path = written(tmp_path, "[sweep]\nbasis.size = [10, 20]")
+    with pytest.raises(ConfigError, match=r"basis\.size is set by --set basis\.size=5 and by \[sweep\]"):
+        plan_of(path, ["basis.size=5"])
+    assert [fit.parameters["basis.size"] for fit in fits_of(plan_of(path, ["sweep.basis.size=[30]"]))] == [30]
+    assert fits_of(plan_of(path, {"basis.width": 2.0}))[0].tables["basis"] == {"width": 2.0, "size": 10}
 
 
 @pytest.mark.parametrize(
