@@ -67,6 +67,7 @@ class Progress:
             self._share.begins(stage)
             self._tick_from_now()
         else:
+            self._stage = ""
             self._share.ends(stage)
         if self._line is None:
             ended = {"seconds": round(seconds, 4)} if seconds is not None else {}
@@ -133,6 +134,9 @@ class Progress:
             parts = [f"{time.monotonic() - self._began:.0f} s", f"{percent:.0f} % of the fit done"]
             words = ", ".join(filter(None, [*parts, in_words(self._share.left)]))
             self._line.show(f"{self._stage} … {words}")
+        elif self._ticker and not self._stage:
+            self._ticker.stop()
+            self._ticker = None
 
     def _estimate(self) -> dict[str, Any]:
         return {"share": round(self._share.share, 4), "left": _rounded(self._share.left)}
