@@ -183,6 +183,8 @@ class _Pool:
         pipe = subprocess.PIPE
         process = subprocess.Popen([sys.executable, "-c", _START], stdin=pipe, stdout=pipe, start_new_session=True)
         self._processes.add(process)
+        if self._over:  # since the item was taken
+            process.kill()
         assert process.stdin is not None
         try:
             pickle.dump(sys.path, process.stdin)
