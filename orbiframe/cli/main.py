@@ -63,6 +63,7 @@ def _run(arguments: list[str]) -> int:
     registry.register("commands", commands)
     args = parsed(arguments, registry)
     json = args.progress.mode == "json"
+    args.progress.watch(args.command)
     try:
         with compilation_told(quiet=args.progress.mode == "none", json=json):
             status: int = args.run(args, registry)
@@ -83,6 +84,7 @@ def parsed(arguments: list[str], registry: Registry) -> argparse.Namespace:
         registry.component("command", chosen)
     parser.set_defaults(run=lambda *_: _print_help(parser))
     args = parser.parse_args(arguments)
+    args.command = chosen or ""
     args.progress = Progress(quiet=getattr(args, "quiet", False), mode=args.progress)
     return args
 

@@ -108,6 +108,21 @@ def test_a_long_stage_is_told_again(monkeypatch):
     assert (alive["event"], alive["stage"]) == ("alive", "fit")
 
 
+def test_a_command_without_stages_is_alive(monkeypatch):
+    from orbiframe.cli import progress as module
+
+    monkeypatch.setattr(module, "_TICK", 0.01)
+    monkeypatch.setattr(sys, "stderr", stream := io.StringIO())
+    progress = Progress(mode="json")
+    progress.watch("group")
+    while "alive" not in stream.getvalue():
+        module.time.sleep(0.01)
+    progress.close()
+    assert events(stream.getvalue())[0]["stage"] == "group"
+    Progress(stream, mode="auto").watch("group")
+    assert events(stream.getvalue())[-1]["event"] == "alive"
+
+
 def test_nothing_is_told_when_nothing_goes_on(monkeypatch):
     from orbiframe.cli import progress as module
 
