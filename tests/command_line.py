@@ -39,7 +39,7 @@ def orbiframe(capsys, monkeypatch) -> Callable[..., Ran]:
     """Run the command line in this process; nothing is said of compilation, which depends on what ran before."""
 
     def run(*arguments: object) -> Ran:
-        monkeypatch.setattr(program, "compilation_told", lambda *, quiet: nullcontext())
+        monkeypatch.setattr(program, "compilation_told", lambda **_: nullcontext())
         capsys.readouterr()
         status = program.main([str(argument) for argument in arguments])
         return Ran(status, *capsys.readouterr())

@@ -5,11 +5,10 @@ from __future__ import annotations
 import argparse
 import time
 import warnings
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from orbiframe.cli.progress import Progress
 from orbiframe.cli.repairs import add_repairs, repaired, repairs_asked
 from orbiframe.cli.report import json_text, summary, write_report
 from orbiframe.cli.speech import say
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
     from orbiframe.fitting.config import Config
     from orbiframe.fitting.parts import Parts
     from orbiframe.fitting.pipeline import Result
+    from orbiframe.fitting.stages import Progress
     from orbiframe.meshes.polyhedron import Polyhedron
 
 
@@ -32,8 +32,11 @@ _MOST_FACES, _LEAST_TOLERANCE = 5000, 1e-7
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add("mesh", metavar="MESH", type=Path, help="closed surfaces, one or several, orientable or not, of any genus")
-    add("-o", "--output", metavar="OUT", type=Path, required=True, help="a fine mesh, or the exact surface as .step")
+    add("mesh", metavar="MESH", type=Path, nargs="+", help="closed surfaces, orientable or not, of any genus")
+    add("-o", "--output", metavar="OUT", type=Path, help="a fine mesh, or the exact surface as .step")
+    add("--into", metavar="DIR", type=Path, help="the folder for many meshes, instead of -o")
+    add("--to", metavar="SUFFIX", default="ply", help="with --into: the suffix of the files; default ply")
+    add("--workers", metavar="N", type=int, default=1, help="with --into: so many processes at once; default 1")
     add("--config", metavar="FILE.toml", type=Path, help="components and options of the steps")
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=200")
     add("--group", metavar="NAME", help="a named group, such as regular-polygon; else that of the mesh (group.method)")
@@ -60,6 +63,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--faces", metavar="N", type=int, help="to CAD: about so many B-spline faces; default as the topology suggests")
     add("--export-tolerance", metavar="T", type=float, help="of these faces, of the box's diagonal; default 1e-4")
     add("--conforming", action="store_true", help="to G+Smo (.xml): neighbouring patches have the same knots")
+    add("--unit", choices=("mm", "cm", "m", "in"), help="to CAD: the unit of the file's lengths; default mm")
     add("--exact", action="store_true", help="to CAD: the exact patches of --basis ps2, ps6 and others")
     add("--order", metavar="Q", type=int, help="write curved triangles of order 1 to 6, for finite elements")
     add("--format", metavar="NAME", help="with --order: the format, such as gmsh-2.2, instead of that of the suffix")
@@ -68,38 +72,47 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--json", action="store_true", help="print the report as JSON instead of the summary")
     add("--quiet", action="store_true", help="print nothing but errors")
     add_repairs(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, wrong_use=parser.error)
 
 
 def run(args: argparse.Namespace, registry: Registry) -> int:
-    """Fit, write what was asked for, and say what came out."""
+    """Fit, write what was asked for, and say what came out; many meshes with --into."""
+    if args.into is not None:
+        from orbiframe.cli.fit_many import run_many
+
+        return run_many(args, registry)
+    if args.output is None or len(args.mesh) > 1:
+        args.wrong_use("give one MESH and -o OUT, or any number of meshes and --into DIR")
+    args.mesh = args.mesh[0]
+    report, written = fitted(args, registry, args.progress)
+    if not args.quiet:
+        print(json_text(report) if args.json else summary(report, written=written))
+    return 0
+
+
+def fitted(args: argparse.Namespace, registry: Registry, progress: Progress) -> tuple[dict[str, Any], str | None]:
+    """Fit one mesh and write what was asked for; the report, and what was written where that is no mesh."""
     from orbiframe.files import gate
     from orbiframe.fitting.config import Config
     from orbiframe.fitting.parts import fit_parts
 
-    config = Config.load(args.config, overrides(args))
-    for path in config.plugins:
-        registry.add_file(path)
-    config.checked(registry)
+    config = Config.load(args.config, overrides(args), registry)
     _require_destinations(args, config, registry)
     mesh = _repaired(args, config, registry) if repairs_asked(args) else args.mesh
-    progress = Progress(quiet=args.quiet)
     found = fit_parts(mesh, config, registry, progress)
     written, kind = None, _kind(args, config, registry)
     if kind == "elements":
         written = _write_elements(args, found, config.output.refine or 1, registry, progress)
     elif kind == "exporter":
-        few = _few_faces(args, config, registry)
-        written = _export(args.output, _only(found, args.output), few, registry, progress)
+        options = _export_options(args, config, registry) or {}
+        written = _export(args.output, _only(found, args.output), options, registry, progress)
     else:
         gate.write(args.output, found.output, registry)
     if args.save:
         _save(args.save, found)
     if args.report:
         write_report(args.report, found.report)
-    if not args.quiet:
-        print(json_text(found.report) if args.json else summary(found.report, written=written))
-    return 0
+    return found.report, written
 
 
 def _only(found: Parts, path: Path) -> Result:
@@ -148,16 +161,16 @@ def _size(path: Path) -> str:
     return f"{path.stat().st_size / 1e6:.2g} MB"
 
 
-def _export(path: Path, result: Result, few: dict[str, object] | None, registry: Registry, progress: Progress) -> str:
+def _export(path: Path, result: Result, options: dict[str, object], registry: Registry, progress: Progress) -> str:
     """Write the surface itself, or a few faces near it, and say what was written; it takes seconds."""
     from orbiframe.files import gate
 
     progress("export", None)
     start = time.perf_counter()
-    found = gate.export(path, result.surface, registry, options=few)
+    found = gate.export(path, result.surface, registry, options=options)
     result.report["seconds"]["export"] = round(time.perf_counter() - start, 4)
     progress("export", result.report["seconds"]["export"])
-    if few is None:
+    if "faces" not in options:
         return f"exact rational patches, {_size(path)}"
     result.report["export"] = found
     for note in _shortcomings(found):
@@ -210,31 +223,61 @@ def overrides(args: argparse.Namespace) -> list[str]:
     return [*fast, *args.set, *(f"{key}={value}" for key, value in named.items() if value is not None)]
 
 
-def _few_faces(args: argparse.Namespace, config: Config, registry: Registry) -> dict[str, object] | None:
-    """The options of an exporter for a few faces; None for exact patches, or where no exporter makes faces.
-
-    Functions that have exact patches give these unless faces are asked for.
-    """
-    asked = args.faces is not None or args.export_tolerance is not None
+def _export_options(args: argparse.Namespace, config: Config, registry: Registry) -> dict[str, object] | None:
+    """The options of the exporter that writes the surface itself, or faces near it; None where a mesh is written."""
     known = _exporter_options(args.output, registry)
-    makes = known is not None and "faces" in known
-    if asked and (args.exact or not makes):
-        raise UsageError(f"{args.output}: --faces and --export-tolerance are for CAD, as part.step, without --exact")
-    if args.exact and (known is None or (makes and "exact" not in known)):
-        raise UsageError(f"{args.output}: --exact is for files that hold exact surfaces, such as part.step")
-    if args.conforming and (known is None or "conforming" not in known):
-        raise UsageError(f"{args.output}: --conforming is for patches of G+Smo, as patches.xml")
-    if known is None or not makes or args.exact or (_piecewise(config, registry) and not asked and "exact" in known):
+    _require_known(args, known)
+    if known is None:
         return None
-    if config.data.creases is not None:
-        raise UsageError("--faces and --export-tolerance round creases off; write the exact patches: leave them out")
+    exact = args.exact or _kept_exactly(args, config, known)
+    options: dict[str, object] = {"unit": args.unit or "mm", "name": args.mesh.stem}
+    if "faces" in known and not exact:
+        options |= {"exact": False, "conforming": args.conforming, **_faces(args)}
+    elif not _piecewise(config, registry):
+        return None
+    return {name: value for name, value in options.items() if name in known}
+
+
+def _kept_exactly(args: argparse.Namespace, config: Config, known: Collection[str]) -> bool:
+    """Whether exact patches are written because of creases, which faces near the surface would round off."""
+    if config.data.creases is None:
+        return False
+    if args.faces is not None or args.export_tolerance is not None or "exact" not in known:
+        raise UsageError(
+            f"{args.output}: faces near the surface round its creases off; write the exact patches, as part.step, "
+            "without --faces and --export-tolerance"
+        )
+    return True
+
+
+def _require_known(args: argparse.Namespace, known: Collection[str] | None) -> None:
+    """Raise UsageError for what the exporter of the output's suffix, with options of these names, does not do."""
+    found = known or ()
+    asked = args.faces is not None or args.export_tolerance is not None
+    for wrong, sentence in (
+        (
+            asked and (args.exact or "faces" not in found),
+            "--faces and --export-tolerance are for CAD, as part.step, without --exact",
+        ),
+        (
+            args.exact and (known is None or ("faces" in found and "exact" not in found)),
+            "--exact is for files that hold exact surfaces, such as part.step",
+        ),
+        (args.conforming and "conforming" not in found, "--conforming is for patches of G+Smo, as patches.xml"),
+        (args.unit is not None and "unit" not in found, "--unit is for CAD, as part.step"),
+    ):
+        if wrong:
+            raise UsageError(f"{args.output}: {sentence}")
+
+
+def _faces(args: argparse.Namespace) -> dict[str, object]:
+    """How many faces are asked for, and how near."""
     if args.faces is not None and not 1 <= args.faces <= _MOST_FACES:
         raise UsageError(f"--faces {args.faces}: give 1 to {_MOST_FACES}")
     tolerance = 1e-4 if args.export_tolerance is None else args.export_tolerance
     if not _LEAST_TOLERANCE <= tolerance < 1:
         raise UsageError(f"--export-tolerance {tolerance:g}: give {_LEAST_TOLERANCE:g} to 1, of the box's diagonal")
-    options = {"exact": False, "faces": args.faces or 0, "tolerance": tolerance, "conforming": args.conforming}
-    return {name: value for name, value in options.items() if name in known}
+    return {"faces": args.faces or 0, "tolerance": tolerance}
 
 
 def _exporter_options(path: Path, registry: Registry) -> set[str] | None:
@@ -256,13 +299,6 @@ def _piecewise(config: Config, registry: Registry) -> bool:
     return isinstance(basis, type) and issubclass(basis, PiecewiseBasis)
 
 
-def _exact(args: argparse.Namespace, config: Config, registry: Registry) -> bool:
-    """Whether the surface itself is written and not a mesh on it: where the format and the functions allow it."""
-    from orbiframe.files.gate import exports
-
-    return exports(args.output, registry) and _piecewise(config, registry)
-
-
 def _kind(args: argparse.Namespace, config: Config, registry: Registry) -> str:
     """The kind of component that writes the output. Raises UsageError for orders that are not made."""
     from orbiframe.surfaces.curved_triangles import LARGEST_ORDER
@@ -270,10 +306,10 @@ def _kind(args: argparse.Namespace, config: Config, registry: Registry) -> str:
     if args.order is None:
         if args.format is not None:
             raise UsageError(f"--format {args.format} chooses how elements are written; add --order, such as --order 2")
-        few = _few_faces(args, config, registry) is not None
-        return "exporter" if few or _exact(args, config, registry) else "writer"
+        return "writer" if _export_options(args, config, registry) is None else "exporter"
     if not 1 <= args.order <= LARGEST_ORDER:
         raise UsageError(f"--order {args.order}: elements have an order of 1 to {LARGEST_ORDER}")
+    _require_known(args, None)
     return "elements"
 
 

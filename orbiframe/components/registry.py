@@ -7,6 +7,7 @@ import os
 from collections.abc import Callable, Iterable
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
+from types import ModuleType
 from typing import Any, TypeGuard, cast
 
 import pluggy
@@ -22,12 +23,16 @@ from orbiframe.plugin import KINDS, Component
 GROUP = "orbiframe"
 RESTRICTION = "ORBIFRAME_PLUGINS"
 
+# The name of a plugin, and where it comes from: the name of a module, a file, or an object of its own.
+Origin = tuple[str, object]
+
 
 class Registry:
     """The components that plugins declare; an object that is passed down, never a global.
 
     A plugin that cannot be loaded is written into `broken`, as (name of the plugin, what went wrong), and stops nobody
-    else. Nothing that a component names is imported before `load`.
+    else. Nothing that a component names is imported before `load`. A registry can be pickled: what arrives elsewhere
+    has the same plugins, loaded there again, and the same plugin files, which must be there too.
     """
 
     def __init__(self) -> None:
@@ -35,6 +40,7 @@ class Registry:
         self._manager = pluggy.PluginManager(GROUP)
         self._manager.add_hookspecs(hooks)
         self._declared: list[tuple[Component, str]] = []
+        self._origins: list[Origin] = []
 
     @classmethod
     def discover(cls, *, only: Iterable[str] | None = None, files: Iterable[Path] = ()) -> Registry:
@@ -46,7 +52,7 @@ class Registry:
         """
         registry = cls()
         for entry in _chosen(sorted(entry_points(group=GROUP)), only):
-            registry._admit(registry._free_name(entry), entry.load)
+            registry._admit(registry._free_name(entry), entry)
         for path in files:
             registry.add_file(Path(path))
         return registry
@@ -65,14 +71,21 @@ class Registry:
         except BaseException:
             self._manager.unregister(declarations)
             raise
+        self._origins.append((name, declarations.__name__ if isinstance(declarations, ModuleType) else declarations))
 
     def add_file(self, path: Path) -> None:
-        """Add the plugin that one Python file declares. Raises PluginError where it cannot be loaded."""
+        """Add the plugin that one Python file declares, once. Raises PluginError where it cannot be loaded."""
+        if self._manager.has_plugin(str(path)):
+            return
         try:
             module = imported_file(path)
         except (Exception, SystemExit) as error:
             raise PluginError(f"the plugin file {path} cannot be loaded: {_described(error)}") from error
         self.register(str(path), module)
+        self._origins[-1] = str(path), path.absolute()
+
+    def __reduce__(self) -> tuple[Callable[..., Registry], tuple[list[Origin], list[tuple[str, str]]]]:
+        return _again, (self._origins, self.broken)
 
     # ---- asking ---------------------------------------------------------------------------------------------------
 
@@ -120,9 +133,9 @@ class Registry:
 
     # ---- filling --------------------------------------------------------------------------------------------------
 
-    def _admit(self, name: str, load: Callable[[], object]) -> None:
+    def _admit(self, name: str, entry: EntryPoint) -> None:
         try:
-            self.register(name, load())
+            self.register(name, entry.load())
         except (Exception, SystemExit) as error:
             self.broken.append((name, str(error) if isinstance(error, PluginError) else _described(error)))
 
@@ -136,6 +149,20 @@ class Registry:
         hook = self._manager.hook.orbiframe_components
         calls = [call for call in hook.get_hookimpls() if call.plugin is declarations]
         return [_checked(item, name) for call in calls for item in cast("Iterable[object]", call.function())]
+
+
+def _again(origins: list[Origin], broken: list[tuple[str, str]]) -> Registry:
+    """The registry of these plugins, loaded in this process."""
+    registry = Registry()
+    for name, origin in origins:
+        if isinstance(origin, Path):
+            module: object = imported_file(origin)
+        else:
+            module = importlib.import_module(origin) if isinstance(origin, str) else origin
+        registry.register(name, module)
+        registry._origins[-1] = name, origin
+    registry.broken += broken
+    return registry
 
 
 def resolve(component: Component) -> Callable[..., Any]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from orbiframe.components.registry import Registry
 from orbiframe.fitting.config import Config
+from orbiframe.fitting.kept_maps import KeptMaps
 from orbiframe.fitting.pipeline import Result, fit, read_mesh
 from orbiframe.fitting.report import versions
 from orbiframe.fitting.stages import Progress
@@ -39,7 +40,14 @@ class Parts:
 def _silent(_stage: str, _seconds: float | None) -> None: ...
 
 
-def fit_parts(mesh: str | Path | Polyhedron, config: Config, registry: Registry, progress: Progress = _silent) -> Parts:
+def fit_parts(
+    mesh: str | Path | Polyhedron,
+    config: Config,
+    registry: Registry,
+    progress: Progress = _silent,
+    *,
+    maps: KeptMaps | None = None,
+) -> Parts:
     """The smooth surfaces of all components of a polyhedron, that with the most faces first.
 
     A number of functions that is asked for is shared out by area, 100 at least to each; else each has as many as its
@@ -52,7 +60,7 @@ def fit_parts(mesh: str | Path | Polyhedron, config: Config, registry: Registry,
     require_closed_surface(whole, several=True)
     count = face_components(whole)[0]
     if count == 1:
-        only = fit(whole, config, registry, progress)
+        only = fit(whole, config, registry, progress, maps=maps)
         return Parts((only,), only.output, only.report)
     pieces = [component(whole, number).polyhedron for number in range(1, count + 1)]
     areas = np.array([np.linalg.norm(vector_areas(piece), axis=1).sum() for piece in pieces])
@@ -60,7 +68,7 @@ def fit_parts(mesh: str | Path | Polyhedron, config: Config, registry: Registry,
     results = []
     for number, (piece, share) in enumerate(zip(pieces, shares, strict=True), start=1):
         own = _own_config(config, float(share), whole.diagonal / (piece.diagonal or 1.0))
-        results.append(fit(piece, own, registry, _numbered(progress, number, count), share=float(share)))
+        results.append(fit(piece, own, registry, _numbered(progress, number, count), share=float(share), maps=maps))
     output = disjoint_union([result.output for result in results])
     return Parts(tuple(results), output, _report(results, areas, whole.diagonal, output))
 

@@ -16,6 +16,7 @@ from orbiframe.files import gate
 from orbiframe.fitting.approximation import Approximations
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.inspection import inspected
+from orbiframe.fitting.kept_maps import KeptMaps
 from orbiframe.fitting.limits import require_density
 from orbiframe.fitting.mapping import Mapping
 from orbiframe.fitting.report import report
@@ -50,14 +51,16 @@ def fit(
     progress: Progress = _silent,
     *,
     share: float = 1.0,
+    maps: KeptMaps | None = None,
 ) -> Result:
     """The smooth surface of a closed polyhedron, given as a file or as an object.
 
     progress: called with the name of each stage at its start (seconds None) and at its end; share: of the faces that
-    a fine picture needs. Raises FormatError, TopologyError, MapError, FitError or ConfigError, each a sentence with a
+    a fine picture needs; maps: a folder from which maps to X/H are taken where they are there, and in which they are
+    kept. Raises FormatError, TopologyError, MapError, FitError or ConfigError, each a sentence with a
     next step.
     """
-    stages = Stages(registry, progress)
+    stages = Stages(registry, progress, maps=maps)
     config = config.checked(registry)
     polyhedron = mesh if isinstance(mesh, Polyhedron) else stages("read", read_mesh, Path(mesh), config, registry)
     surface_type = stages("topology", require_closed_surface, polyhedron)
