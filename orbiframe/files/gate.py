@@ -31,6 +31,9 @@ class Components(Protocol):
     def component(self, kind: str, name: str) -> Component:
         """The component of this name."""
 
+    def for_suffix(self, kind: str, suffix: str) -> list[Component]:
+        """The components of a kind for a file suffix."""
+
     def load(self, kind: str, name: str) -> Callable[..., object]:
         """What the component names, imported now."""
 
@@ -118,9 +121,10 @@ def component_name(path: Path, registry: Components, kind: str, format: str | No
     format.
     """
     if format is not None:
-        return registry.component(kind, format).name
+        registry.component(kind, format)
+        return format
     suffix = path.suffix.lower()
-    names = [c.name for c in registry.components(kind) if suffix in c.suffixes]
+    names = [c.name for c in registry.for_suffix(kind, suffix)]
     if not names:
         raise FormatError(_unknown(path, suffix, kind, registry))
     if len(names) > 1:

@@ -187,8 +187,10 @@ def _surface(arrays: Arrays, about: About, registry: Components, path: Path) -> 
     make = registry.load("basis", about["basis"])
     options = checked_options(make, about["options"], "basis", {})
     chi = about["euler_characteristic"]
-    plane = geometry_name(chi)
-    require(about["geometry"] == plane, "about", f"a surface of Euler characteristic {chi} is made of {plane}")
+    sign = (chi > 0) - (chi < 0)
+    require(
+        geometry.curvature == sign, "about", f"a surface of Euler characteristic {chi} is made of {geometry_name(chi)}"
+    )
     coarse, fine = (require_mesh(arrays, prefix, about) for prefix in ("coarse", "fine"))
     refinement = require_refinement(arrays, coarse, fine)
     atlas = require_atlas(arrays, geometry)

@@ -20,6 +20,7 @@ from orbiframe.components.suggestion import did_you_mean
 from orbiframe.errors import ConfigError, FormatError, PluginError, UsageError
 from orbiframe.files.places import require_readable
 from orbiframe.fitting.limits import require_size
+from orbiframe.plugin import OPEN_NAMES
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +66,10 @@ class Data:
     noise: Annotated[float, Gt(0)] | None = None
 
 
-OPEN_NAMES = ("auto", "mesh", "none")
-
 # Table of the configuration: the kind of its component, the key that names it, and the name if nothing is said.
 STEPS = {
     "mesh": ("reader", "format", "auto"),
+    "geometry": ("geometry", "name", "auto"),
     "group": ("group", "method", "mesh"),
     "marking": ("marker", "method", "auto"),
     "map": ("parametrizer", "method", "auto"),
@@ -85,9 +85,10 @@ _LARGEST_FILE = 2**20
 class Config:
     """A fit in words: a step for each of the tables of `STEPS`, the output, what the mesh means, plugin files.
 
-    mesh: the reader, "auto" by the file suffix; group: "mesh" takes the group from the mesh; marking: cuts the mesh
-    open for a named group; map: "auto" takes the parametrizer that fits the geometry and the group; shape: changes
-    the map so that faces become regular, "none" leaves it as it is; basis; fitter.
+    mesh: the reader, "auto" by the file suffix; geometry: the plane X, "auto" by the Euler characteristic; group:
+    "mesh" takes the group from the mesh; marking: cuts the mesh open for a named group; map: "auto" takes the
+    parametrizer that fits the geometry and the group; shape: changes the map so that faces become regular, "none"
+    leaves it as it is; basis; fitter.
     places: where each "table.key" was written, for error messages.
     """
 
@@ -132,6 +133,11 @@ class Config:
     def mesh(self) -> Step:
         """The reader."""
         return self.steps["mesh"]
+
+    @property
+    def geometry(self) -> Step:
+        """The geometry."""
+        return self.steps["geometry"]
 
     @property
     def group(self) -> Step:

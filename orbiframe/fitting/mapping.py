@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.components.geometry_names import geometry_name
 from orbiframe.errors import MapError
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.stages import Stages
@@ -92,15 +93,29 @@ class Mapping:
 
     def _mapped(self, refinement: Bisection, mesh: Polyhedron) -> Mapped:
         """The map of a mesh that is connected like the refinement, verified."""
-        geometry: Geometry = self.stages.registry.geometry(self.surface_type.euler_characteristic)
+        geometry = self._geometry()
         group = None if self.config.group.open else self._named_group(mesh, geometry)
-        name = (PARAMETRIZER if group is None else NAMED_PARAMETRIZER)[geometry.name]
+        plane = geometry_name(self.surface_type.euler_characteristic)
+        name = (PARAMETRIZER if group is None else NAMED_PARAMETRIZER)[plane]
         name = name if self.config.map.open else self.config.map.name
         parametrizer = self.config.component("map", self.stages.registry, name)
         triangulation: Triangulation = self.stages("map", parametrizer, mesh, geometry, group)
         remedy = "map.method = 'auto'" + ("" if group is None else " or group.method = 'mesh'")
         _require_embedding(triangulation, f"the map of '{name}'", remedy)
         return Mapped(refinement, triangulation, self._shaped(refinement, triangulation))
+
+    def _geometry(self) -> Geometry:
+        """The plane that the configuration names, or that of the Euler characteristic."""
+        chi = self.surface_type.euler_characteristic
+        step = self.config.geometry
+        name = geometry_name(chi) if step.open else step.name
+        geometry: Geometry = self.config.component("geometry", self.stages.registry, name)()
+        if geometry.curvature != (chi > 0) - (chi < 0):
+            raise MapError(
+                f"a surface of Euler characteristic {chi} is made of {geometry_name(chi)}, and '{name}' has the "
+                f"curvature {geometry.curvature}; leave out geometry.name, or name another geometry"
+            )
+        return geometry
 
     def _shaped(self, refinement: Bisection, first: Triangulation) -> Triangulation:
         """The map changed so that the faces of the polyhedron become regular, where an optimizer is named."""
