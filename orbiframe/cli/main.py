@@ -11,10 +11,11 @@ from collections.abc import Sequence
 from importlib.metadata import version
 
 from orbiframe.cli import plugin as commands
+from orbiframe.cli.blame import named
 from orbiframe.cli.progress import Progress, compilation_told
 from orbiframe.cli.speech import any_letter, fill_closed_streams, say, silence
 from orbiframe.components.registry import Registry
-from orbiframe.errors import OrbiframeError, UsageError
+from orbiframe.errors import OrbiframeError, PluginError, UsageError
 
 INTERRUPTED = 130
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -54,10 +55,25 @@ def _fix_threads() -> None:
 def _run(arguments: list[str]) -> int:
     registry = Registry.discover()
     registry.register("commands", commands)
-    args = parsed(arguments, registry)
-    with compilation_told(quiet=getattr(args, "quiet", False)):
-        status: int = args.run(args, registry)
-    return status
+    for plugin, seconds in registry.slow:
+        say(f"the plugin '{plugin}' took {seconds:.1f} s to declare itself; it should import nothing heavy for that")
+    try:
+        args = parsed(arguments, registry)
+        with compilation_told(quiet=getattr(args, "quiet", False)):
+            return _status(args.run(args, registry), args, registry)
+    except Exception as error:
+        told = named(error, registry)
+        if told is error:
+            raise
+        raise told from error
+
+
+def _status(found: object, args: argparse.Namespace, registry: Registry) -> int:
+    """What a command gives back, if it is an exit status. Raises PluginError otherwise."""
+    if not isinstance(found, int):
+        title = registry.title(registry.component("command", args.command))
+        raise PluginError(f"{title} gives {found!r}; its function `run` must return 0, 1 or 2")
+    return found
 
 
 def parsed(arguments: list[str], registry: Registry) -> argparse.Namespace:
@@ -72,6 +88,7 @@ def parsed(arguments: list[str], registry: Registry) -> argparse.Namespace:
         registry.component("command", chosen)
     parser.set_defaults(run=lambda *_: _print_help(parser))
     args = parser.parse_args(arguments)
+    args.command = chosen
     args.progress = Progress(quiet=getattr(args, "quiet", False))
     return args
 

@@ -34,13 +34,14 @@ class Registry:
 
     A plugin that cannot be loaded is written into `broken`, as (name of the plugin, what went wrong), and stops nobody
     else; one whose declarations take long, into `slow`, as (name, seconds). Nothing that a component names is imported
-    before `load`. A name belongs to orbiframe's own component where it has one; another plugin's component of this
-    name is asked for as "plugin:name".
+    before `load`; `used` has the plugins, none of orbiframe's own, of what has been loaded. A name belongs to
+    orbiframe's own component where it has one; that of another plugin is asked for as "plugin:name".
     """
 
     def __init__(self) -> None:
         self.broken: list[tuple[str, str]] = []
         self.slow: list[tuple[str, float]] = []
+        self.used: set[str] = set()
         self._own: set[str] = set()
         self._manager = pluggy.PluginManager(GROUP)
         self._manager.add_hookspecs(hooks)
@@ -135,6 +136,8 @@ class Registry:
     def stranger(self, module: str) -> str | None:
         """The plugin, none of orbiframe's own, to which a module belongs by its declarations or its targets."""
         root = _root(module)
+        if root == OWN or root in {_root(c.target) for c, owner in self._declared if owner in self._own}:
+            return None
         targets = {_root(c.target): owner for c, owner in self._declared if owner not in self._own}
         modules = {
             _root(getattr(plugin, "__name__", type(plugin).__module__)): name
@@ -149,7 +152,20 @@ class Registry:
         Raises UsageError for an unknown name; PluginError if the target cannot be imported, with the pip command
         where a package is missing.
         """
-        return resolve(self.component(kind, name))
+        component = self.component(kind, name)
+        owner = self.owner(component)
+        if owner not in self._own:
+            self.used.add(owner)
+        return resolve(component, self.title(component))
+
+    def owner(self, component: Component) -> str:
+        """The plugin that declares a component."""
+        return next(owner for found, owner in self._declared if found is component)
+
+    def title(self, component: Component) -> str:
+        """How a component is called in sentences: with its plugin, unless that is one of orbiframe's own."""
+        owner = self.owner(component)
+        return f"{component.kind} '{component.name}'" + ("" if owner in self._own else f" of the plugin '{owner}'")
 
     def geometry(self, characteristic: float) -> Any:
         """The geometry, made now, of the closed surfaces with an Euler characteristic of this sign."""
@@ -189,10 +205,13 @@ class Registry:
         return [sound(item, name) for items in found for item in cast("Iterable[object]", items)]
 
 
-def resolve(component: Component) -> Callable[..., Any]:
-    """The object that `component.target` names, imported now. Raises PluginError where that fails."""
+def resolve(component: Component, title: str = "") -> Callable[..., Any]:
+    """The object that `component.target` names, imported now.
+
+    title: what the component is called where that fails, which raises PluginError.
+    """
     module, _, attribute = component.target.partition(":")
-    title = f"{component.kind} '{component.name}'"
+    title = title or f"{component.kind} '{component.name}'"
     try:
         found: Callable[..., Any] = getattr(importlib.import_module(module), attribute)
     except Exception as error:

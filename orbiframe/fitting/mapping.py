@@ -12,8 +12,11 @@ from numpy.typing import NDArray
 from orbiframe.components.geometry_names import geometry_name
 from orbiframe.errors import MapError
 from orbiframe.fitting.config import Config
+from orbiframe.fitting.made import made
 from orbiframe.fitting.stages import Stages
+from orbiframe.groups.group import Group
 from orbiframe.groups.marked_group import MarkedGroup
+from orbiframe.groups.marking import Marking
 from orbiframe.meshes.bisection import Bisection, bisected, edge_length_for
 from orbiframe.meshes.flat_flips import FlatFlips, flat_flips
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -99,7 +102,13 @@ class Mapping:
         name = (PARAMETRIZER if group is None else NAMED_PARAMETRIZER)[plane]
         name = name if self.config.map.open else self.config.map.name
         parametrizer = self.config.component("map", self.stages.registry, name)
-        triangulation: Triangulation = self.stages("map", parametrizer, mesh, geometry, group)
+        triangulation = made(
+            self.stages.registry,
+            "parametrizer",
+            name,
+            self.stages("map", parametrizer, mesh, geometry, group),
+            Triangulation,
+        )
         remedy = "map.method = 'auto'" + ("" if group is None else " or group.method = 'mesh'")
         _require_embedding(triangulation, f"the map of '{name}'", remedy)
         return Mapped(refinement, triangulation, self._shaped(refinement, triangulation))
@@ -109,7 +118,8 @@ class Mapping:
         chi = self.surface_type.euler_characteristic
         step = self.config.geometry
         name = geometry_name(chi) if step.open else step.name
-        geometry: Geometry = self.config.component("geometry", self.stages.registry, name)()
+        found = self.config.component("geometry", self.stages.registry, name)()
+        geometry = made(self.stages.registry, "geometry", name, found, Geometry)  # type: ignore[type-abstract]
         if geometry.curvature != (chi > 0) - (chi < 0):
             raise MapError(
                 f"a surface of Euler characteristic {chi} is made of {geometry_name(chi)}, and '{name}' has the "
@@ -124,7 +134,9 @@ class Mapping:
             return first
         target = refinement.spread(regular_triangles(self.polyhedron))
         optimizer = self.config.component("shape", self.stages.registry)
-        shaped: Triangulation = self.stages("shape", optimizer, first, target)
+        shaped = made(
+            self.stages.registry, "optimizer", step.name, self.stages("shape", optimizer, first, target), Triangulation
+        )
         _require_embedding(shaped, f"the shapes of '{step.name}'", "shape.method = 'none'")
         return shaped
 
@@ -132,8 +144,10 @@ class Mapping:
         """The mesh cut open to a disc, and the group that the configuration names with the word of its boundary."""
         config, registry = self.config, self.stages.registry
         name = DEFAULT_MARKER if config.marking.open else config.marking.name
-        marking = self.stages("marking", config.component("marking", registry, name), mesh)
-        group = self.stages("group", config.component("group", registry), geometry, marking.word)
+        marker = config.component("marking", registry, name)
+        marking = made(self.stages.registry, "marker", name, self.stages("marking", marker, mesh), Marking)
+        found = self.stages("group", config.component("group", registry), geometry, marking.word)
+        group = made(self.stages.registry, "group", config.group.name, found, Group)  # type: ignore[type-abstract]
         return MarkedGroup(group, marking, config.group.name)
 
 

@@ -6,6 +6,7 @@ from itertools import islice
 
 import pytest
 
+from orbiframe.cli import plugin as commands
 from orbiframe.components.registry import Registry, resolve
 from orbiframe.errors import OrbiframeError, UsageError
 from orbiframe.plugin import KINDS, Component
@@ -13,8 +14,8 @@ from orbiframe.testing import Lab, component_laws, contract_tests, laws_of
 from orbiframe.testing.check import check, equipments
 from orbiframe.testing.kit import bound, has_laws, tried
 
-LAWFUL_KINDS = tuple(kind for kind in KINDS if kind != "command")
 REGISTRY = Registry.discover()
+REGISTRY.register("commands", commands)
 DECLARED = [component for component, _ in REGISTRY.declarations()]
 
 
@@ -27,7 +28,6 @@ def component_cases():
     return [
         pytest.param(component, equipment, law, id=" ".join([title(component), *suffix(equipment), law.__name__]))
         for component in DECLARED
-        if component.kind in LAWFUL_KINDS
         for equipment in islice(equipments(component, REGISTRY), 1)
         if tried_here(component, equipment)
         for law in laws_of(component.kind).laws
@@ -46,12 +46,10 @@ def suffix(equipment: dict) -> list[str]:
 
 def mutant_cases():
     """Each mutation on the first installed component of its kind that needs no extra."""
-    return [
-        pytest.param(kind, name, id=f"{kind} {name}") for kind in LAWFUL_KINDS for name in sorted(laws_of(kind).mutants)
-    ]
+    return [pytest.param(kind, name, id=f"{kind} {name}") for kind in KINDS for name in sorted(laws_of(kind).mutants)]
 
 
-@pytest.mark.parametrize("kind", LAWFUL_KINDS)
+@pytest.mark.parametrize("kind", KINDS)
 def test_every_kind_has_laws_a_mutant_for_each_and_a_component(kind):
     laws = laws_of(kind)
     names = [law.__name__ for law in laws.laws]
@@ -135,9 +133,9 @@ def test_a_component_that_cannot_be_imported_gets_one_verdict():
 
 
 def test_a_kind_without_laws_is_named():
-    assert [kind for kind in KINDS if has_laws(kind)] == list(LAWFUL_KINDS)
-    with pytest.raises(UsageError, match="no laws for the kind 'command'; kinds with laws: geometry"):
-        laws_of("command")
+    assert [kind for kind in KINDS if has_laws(kind)] == list(KINDS)
+    with pytest.raises(UsageError, match="no laws for the kind 'spline'; kinds with laws: geometry"):
+        laws_of("spline")
 
 
 test_h2_by_the_public_way = contract_tests("geometry", REGISTRY.load("geometry", "h2"))
