@@ -47,6 +47,10 @@ class Registry:
         self._manager.add_hookspecs(hooks)
         self._declared: list[tuple[Component, str]] = []
 
+    def __repr__(self) -> str:
+        plugins = len({owner for _, owner in self._declared})
+        return f"<Registry: {len(self._declared)} components of {plugins} plugins, {len(self.broken)} broken>"
+
     @classmethod
     def discover(cls, *, only: Iterable[str] | None = None, files: Iterable[Path] = ()) -> Registry:
         """The registry of all installed plugins (entry points of the group "orbiframe").

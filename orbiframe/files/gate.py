@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from orbiframe.components.options import checked_options
+from orbiframe.components.registry import Registry
 from orbiframe.components.shown_text import shown
 from orbiframe.components.suggestion import did_you_mean
-from orbiframe.errors import FitError, FormatError, PluginError
+from orbiframe.errors import FitError, FormatError, PluginError, TopologyError, UsageError
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.plugin import Component
 
@@ -39,8 +40,8 @@ class Components(Protocol):
 
 
 def read(
-    path: Path,
-    registry: Components,
+    path: str | Path,
+    registry: Components | None = None,
     *,
     format: str | None = None,
     options: Mapping[str, Any] | None = None,
@@ -49,8 +50,8 @@ def read(
 ) -> Polyhedron:
     """The polyhedron of a file, by the reader of its suffix or by the one that `format` names.
 
-    options: those of the reader; degenerate: let faces of fewer than three different vertices pass, to be described or
-    repaired.
+    registry: by default all that is installed; options: those of the reader; degenerate: let faces of fewer than three
+    different vertices pass, to be described or repaired.
 
     The file must be a regular one of 1 to size_limit bytes. Raises FormatError, naming the file, for anything that is
     wrong with it or with the polyhedron in it: a coordinate that is not finite, an index out of range, a face of fewer
@@ -59,28 +60,30 @@ def read(
     """
     path = Path(path)
     require_readable(path, size_limit)
-    reader = _component(path, registry, "reader", format, options)
+    reader = _component(path, _registry(registry), "reader", format, options)
     return require_sound(_guarded(path, "reading", reader, path), path, degenerate=degenerate)
 
 
 def write(
-    path: Path,
-    polyhedron: Polyhedron,
-    registry: Components,
+    path: str | Path,
+    polyhedron: object,
+    registry: Components | None = None,
     *,
     format: str | None = None,
     options: Mapping[str, Any] | None = None,
 ) -> None:
     """Write a polyhedron, by the writer of the file's suffix or by the one that `format` names, with its options.
 
+    polyhedron: or what `Polyhedron.of` takes; registry: by default all that is installed.
+
     The file appears whole or not at all: it is made in a folder beside its place and then moved. Raises FormatError,
     naming the file, where the polyhedron or the place is unfit or the writer fails; UsageError and PluginError as in
     `read`.
     """
     path = Path(path)
-    require_sound(polyhedron, path)
+    mesh = require_sound(_mesh(polyhedron, path), path)
     require_output(path)
-    _write_whole(path, _component(path, registry, "writer", format, options), polyhedron)
+    _write_whole(path, _component(path, _registry(registry), "writer", format, options), mesh)
 
 
 def export(
@@ -109,6 +112,18 @@ def write_elements(path: Path, mesh: CurvedMesh, registry: Components, *, format
 def exports(path: Path, registry: Components) -> bool:
     """Whether an exporter writes files with this suffix."""
     return any(path.suffix.lower() in c.suffixes for c in registry.components("exporter"))
+
+
+def _mesh(given: object, path: Path) -> Polyhedron:
+    """The polyhedron of what is to be written. Raises FormatError, naming the file, where it is no mesh."""
+    try:
+        return Polyhedron.of(given)
+    except (TopologyError, UsageError) as error:
+        raise FormatError(f"{path}: {error}") from error
+
+
+def _registry(given: Components | None) -> Components:
+    return Registry.discover() if given is None else given
 
 
 # ---- which component ----------------------------------------------------------------------------------------------

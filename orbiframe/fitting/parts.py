@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.components.registry import Registry
 from orbiframe.fitting.config import Config
-from orbiframe.fitting.pipeline import Result, fit, read_mesh
+from orbiframe.fitting.given_back import GivenBack
+from orbiframe.fitting.pipeline import Result, fit, mesh_of, registry_for
 from orbiframe.fitting.report import versions
+from orbiframe.fitting.settings import configured
 from orbiframe.fitting.stages import Progress
+from orbiframe.fitting.told import told
 from orbiframe.meshes.defects import require_closed_surface
 from orbiframe.meshes.orientation import face_components
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -27,8 +29,8 @@ Floats = NDArray[np.float64]
 _LEAST = 100
 
 
-@dataclass(frozen=True, eq=False)
-class Parts:
+@dataclass(frozen=True, eq=False, repr=False)
+class Parts(GivenBack):
     """What a fit of several surfaces returns: a result for each, one mesh of all, and one report."""
 
     results: tuple[Result, ...]
@@ -36,10 +38,13 @@ class Parts:
     report: dict[str, Any]
 
 
-def _silent(_stage: str, _seconds: float | None) -> None: ...
-
-
-def fit_parts(mesh: str | Path | Polyhedron, config: Config, registry: Registry, progress: Progress = _silent) -> Parts:
+def fit_parts(
+    mesh: object,
+    config: Config | None = None,
+    registry: Registry | None = None,
+    progress: Progress | Literal[False] | None = None,
+    **settings: Any,
+) -> Parts:
     """The smooth surfaces of all components of a polyhedron, that with the most faces first.
 
     A number of functions that is asked for is shared out by area, 100 at least to each; else each has as many as its
@@ -47,8 +52,14 @@ def fit_parts(mesh: str | Path | Polyhedron, config: Config, registry: Registry,
     give one with "parts", the report of each, and with the errors, relative to the box of all, and the sizes of all
     together. See `fit` for the rest.
     """
-    config = config.checked(registry)
-    whole = mesh if isinstance(mesh, Polyhedron) else read_mesh(Path(mesh), config, registry)
+    config = configured(config, settings)
+    registry = registry_for(config) if registry is None else registry
+    with told(progress) as heard:
+        return _fitted(mesh, config.checked(registry), registry, heard)
+
+
+def _fitted(mesh: object, config: Config, registry: Registry, progress: Progress) -> Parts:
+    whole = mesh_of(mesh, config, registry)
     require_closed_surface(whole, several=True)
     count = face_components(whole)[0]
     if count == 1:

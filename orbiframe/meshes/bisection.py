@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.components.one_line import one_line
 from orbiframe.errors import TopologyError
 from orbiframe.meshes.flat_flips import FlatFlips
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -36,6 +37,8 @@ class Bisection:
     side: Ints
     child: Ints
     flips: FlatFlips | None = None
+
+    __repr__ = one_line
 
     @property
     def facets(self) -> Polyhedron:
