@@ -18,6 +18,7 @@ from orbiframe.plugin import Component
 if TYPE_CHECKING:
     from orbiframe.surfaces.curved_triangles import CurvedMesh
     from orbiframe.surfaces.surface import OrbifoldSurface
+from orbiframe.files.datasets import located
 from orbiframe.files.outputs import output, require_output
 from orbiframe.files.places import SIZE_LIMIT, require_readable
 from orbiframe.files.soundness import require_sound
@@ -50,7 +51,8 @@ def read(
 ) -> Polyhedron:
     """The polyhedron of a file, by the reader of its suffix or by the one that `format` names.
 
-    registry: by default all that is installed; options: those of the reader; degenerate: let faces of fewer than three
+    path: or "dataset:torus" and the like, see `orbiframe.files.located`; registry: by default all that is installed;
+    options: those of the reader; degenerate: let faces of fewer than three
     different vertices pass, to be described or repaired.
 
     The file must be a regular one of 1 to size_limit bytes. Raises FormatError, naming the file, for anything that is
@@ -58,7 +60,7 @@ def read(
     than three different vertices, no face at all. Whatever a reader raises, the end of the process included, becomes a
     FormatError. Raises UsageError for an unknown format or option, PluginError where the reader cannot be imported.
     """
-    path = Path(path)
+    path = located(path)
     require_readable(path, size_limit)
     reader = _component(path, _registry(registry), "reader", format, options)
     return require_sound(_guarded(path, "reading", reader, path), path, degenerate=degenerate)
@@ -138,7 +140,7 @@ def component_name(path: Path, registry: Components, kind: str, format: str | No
     if format is not None:
         registry.component(kind, format)
         return format
-    suffix = path.suffix.lower()
+    suffix = located(path).suffix.lower()
     names = [c.name for c in registry.for_suffix(kind, suffix)]
     if not names:
         raise FormatError(_unknown(path, suffix, kind, registry))

@@ -10,7 +10,7 @@ test_huber = contract_tests("fitter", Huber)
 
 
 def test_outliers_do_not_pull(tmp_path):
-    """A tenth of the values is off by 1, and the fit within a thousandth of the others, 50 times nearer than squares."""
+    """A tenth of the values is off by 1, and the fit within a thousandth of the others, where squares are not."""
     triangulation = Lab(tmp_path).triangulations["torus"]
     basis = Registry.discover().load("basis", "gaussian")(triangulation.orbifold, triangulation, size=40)
     rng = np.random.default_rng(1)
