@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,7 @@ from orbiframe.files.surface_laws import (
     require_mesh,
     require_refinement,
 )
+from orbiframe.meshes.polyhedron import UNITS
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.triangulations.triangulation import Triangulation
@@ -82,6 +84,7 @@ _OPTIONAL: dict[str, tuple[type, tuple[int | str, ...]]] = {
     "density": (np.float64, ("W",)),
     "flip_halfedge": (np.intp, ("L", 2)),
     "flip_crossing": (np.float64, ("L", 2)),
+    "flip_halved": (np.bool_, ("L",)),
 }
 _KINDS = _SHAPES | _OPTIONAL
 
@@ -151,6 +154,8 @@ def _read_about(archive: ArrayArchive, path: Path) -> About:
     for name, type_ in _WORDS.items():
         if not isinstance(about[name], type_) or (isinstance(about[name], bool) and type_ is not bool):
             raise TypeError(f"'{name}' in the array 'about' is no {type_.__name__}")
+    if about.get("unit") not in (None, *UNITS):
+        raise ValueError(f"'unit' in the array 'about' is none of {', '.join(UNITS)}")
     return dict(about)
 
 
@@ -195,6 +200,7 @@ def _surface(arrays: Arrays, about: About, registry: Components, path: Path) -> 
         geometry.curvature == sign, "about", f"a surface of Euler characteristic {chi} is made of {geometry_name(chi)}"
     )
     coarse, fine = (require_mesh(arrays, prefix, about) for prefix in ("coarse", "fine"))
+    coarse = replace(coarse, unit=about.get("unit"))
     refinement = require_refinement(arrays, coarse, fine)
     atlas = require_atlas(arrays, geometry)
     orbifold = Orbifold(atlas, chi, about["orientable"], float(arrays["area"]))
@@ -270,6 +276,7 @@ def _about(surface: OrbifoldSurface) -> About:
         "weights": triangulation.weights,
         "basis": surface.basis_name,
         "options": dict(surface.basis_options),
+        **({} if surface.unit is None else {"unit": surface.unit}),
     }
 
 
@@ -294,6 +301,7 @@ def _arrays(surface: OrbifoldSurface) -> dict[str, NDArray[Any]]:
 
 
 def _optional(surface: OrbifoldSurface) -> dict[str, NDArray[Any] | None]:
-    flips = surface.refinement.flips
-    turned = {} if flips is None else {"flip_halfedge": flips.halfedge, "flip_crossing": flips.crossing}
-    return {"density": surface.triangulation.density, **turned}
+    log = surface.refinement.log
+    steps = {} if log is None else {"flip_halfedge": log.halfedge, "flip_crossing": log.crossing}
+    halved = {} if log is None or not log.halved.any() else {"flip_halved": log.halved}
+    return {"density": surface.triangulation.density, **steps, **halved}

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from orbiframe.errors import OrbiframeError
 from orbiframe.meshes.bisection import Bisection
-from orbiframe.meshes.flat_flips import FlatFlips
+from orbiframe.meshes.edge_log import EdgeLog
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.surface_type import surface_type
 from orbiframe.orbifolds.atlas import Atlas
@@ -67,7 +67,8 @@ def require_mesh(arrays: Arrays, prefix: str, about: Mapping[str, Any]) -> Polyh
 def require_refinement(arrays: Arrays, coarse: Polyhedron, fine: Polyhedron) -> Bisection:
     """The forest of halved triangles, whose leaves are those of the fine mesh."""
     side, child = arrays["side"], arrays["child"]
-    roots, count = coarse.face_count, len(side)
+    log = _log(arrays, coarse)
+    roots, count = (coarse if log is None else log.after).face_count, len(side)
     require(count == 2 * fine.face_count - roots, "side", "every halved triangle has two halves")
     require((side >= -1) & (side <= 2), "side", "sides are 0, 1 and 2, or -1 at a leaf")
     node = np.flatnonzero(side >= 0)
@@ -77,7 +78,7 @@ def require_refinement(arrays: Arrays, coarse: Polyhedron, fine: Polyhedron) -> 
     require(whole, "child", "every triangle that is none of the coarse ones is half of one other")
     leaves = np.sort(child[side < 0])
     require(np.array_equal(leaves, np.arange(fine.face_count)), "child", "every fine triangle is one leaf")
-    refinement = Bisection(coarse, fine, side, child, _flips(arrays, coarse))
+    refinement = Bisection(coarse, fine, side, child, log)
     _require_halves(refinement)
     return refinement
 
@@ -91,30 +92,32 @@ def _require_halves(refinement: Bisection) -> None:
     corners = np.empty((len(side), 3), dtype=np.intp)
     leaf = side < 0
     corners[leaf] = fine.triangles[child[leaf]]
-    for node in reversed(_levels(side, child, refinement.coarse.face_count)):
+    for node in reversed(_levels(side, child, refinement.facets.face_count)):
         first, second, start = corners[child[node]], corners[child[node] + 1], side[node]
         joined = (first[:, 2] == second[:, 2]) & (first[:, 1] == second[:, 0])
         require(joined, "child", "two halves have the middle of a side and the opposite corner in common")
         corners[node, start] = first[:, 0]
         corners[node, (start + 1) % 3] = second[:, 1]
         corners[node, (start + 2) % 3] = first[:, 2]
-    whole = corners[: refinement.coarse.face_count] == refinement.facets.triangles
+    whole = corners[: refinement.facets.face_count] == refinement.facets.triangles
     require(whole, "fine_tail", "fine triangles are halves of coarse ones")
 
 
-def _flips(arrays: Arrays, coarse: Polyhedron) -> FlatFlips | None:
-    """The flips of edges of the coarse mesh, if there are any: of two triangles each, that are neighbours by then."""
+def _log(arrays: Arrays, coarse: Polyhedron) -> EdgeLog | None:
+    """The edges of the coarse mesh that are flipped or halved, if any: of two triangles that are neighbours by then."""
     if "flip_halfedge" not in arrays:
         return None
     halfedge, crossing = arrays["flip_halfedge"], arrays["flip_crossing"]
-    sides = len(coarse.tail)
+    halved = arrays.get("flip_halved", np.zeros(len(halfedge), dtype=np.bool_))
+    sides = len(coarse.tail) + 6 * int(halved.sum())
     require((halfedge >= 0) & (halfedge < sides), "flip_halfedge", f"halfedges are 0 to {sides - 1}")
     require(halfedge[:, 0] // 3 != halfedge[:, 1] // 3, "flip_halfedge", "an edge of two triangles is flipped")
     shares = (crossing > 0) & (crossing < 1)
     require(shares[:, 0] & (crossing[:, 1] >= 0) & (crossing[:, 1] <= 1), "flip_crossing", "shares are 0 to 1")
-    flips = FlatFlips(coarse, halfedge, crossing)
-    require(flips.is_sound, "flip_halfedge", "the two halfedges are twins when they are flipped")
-    return flips
+    require(~halved | (crossing == [0.5, 0]).all(axis=1), "flip_crossing", "edges are halved in the middle")
+    log = EdgeLog(coarse, halfedge, crossing, halved)
+    require(log.is_sound, "flip_halfedge", "the two halfedges are twins at every step")
+    return log
 
 
 def _levels(side: Ints, child: Ints, roots: int) -> list[Ints]:

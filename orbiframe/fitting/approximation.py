@@ -174,7 +174,7 @@ class Density(NamedTuple):
         if refinement is self.refinement:
             return self.values
         face, barycentric = refinement.origins()
-        fine, weights = self.refinement.locate_in_facets(face, barycentric)
+        fine, weights = self.refinement.locate(face, barycentric)
         corners = self.values[self.refinement.polyhedron.triangles[fine]]
         return np.asarray(np.einsum("nc,nc->n", weights, corners))
 

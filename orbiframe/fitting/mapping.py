@@ -17,8 +17,10 @@ from orbiframe.fitting.stages import Stages
 from orbiframe.groups.group import Group
 from orbiframe.groups.marked_group import MarkedGroup
 from orbiframe.groups.marking import Marking
-from orbiframe.meshes.bisection import Bisection, bisected, edge_length_for
-from orbiframe.meshes.flat_flips import FlatFlips, flat_flips
+from orbiframe.meshes.bisection import Bisection, affordable_length, bisected, even_edge_length, triangles_made
+from orbiframe.meshes.edge_log import EdgeLog
+from orbiframe.meshes.flat_flips import flat_flips
+from orbiframe.meshes.intrinsic_refinement import intrinsic_refinement
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.regular_triangles import regular_triangles
 from orbiframe.meshes.surface_type import SurfaceType
@@ -32,6 +34,9 @@ NAMED_PARAMETRIZER = {"s2": "sphere", "e2": "equivariant", "h2": "equivariant"}
 
 _VERTICES_PER_FUNCTION = 6
 _LEAST_VERTICES = 3000
+# Bisection that makes more new triangles than this for each vertex that is aimed at cuts needles; so many vertices are
+# put on their surface at most.
+_NEEDLES, _MOST = 3, 20
 
 
 class Mapped(NamedTuple):
@@ -68,7 +73,7 @@ class Mapping:
     maps: dict[float, Mapped] = field(default_factory=dict)
 
     @cached_property
-    def flips(self) -> FlatFlips | None:
+    def flips(self) -> EdgeLog | None:
         """Needles in plane parts of the polyhedron, gone; an optimizer of its faces needs their own triangles."""
         return flat_flips(self.triangles) if self.config.shape.open else None
 
@@ -77,11 +82,20 @@ class Mapping:
         """The triangles after the flips."""
         return self.triangles if self.flips is None else self.flips.after
 
+    def _refined(self, longest: float, vertices: int) -> Bisection:
+        """The mesh with no edge longer than `longest`; needles by the thousand are not halved each for itself."""
+        log, made = self.flips, triangles_made(self.facets, longest)
+        if log is not None and made > _NEEDLES * vertices + self.facets.face_count:
+            log = intrinsic_refinement(log, longest, _MOST * vertices)
+        facets = self.triangles if log is None else log.after
+        return bisected(self.triangles, affordable_length(facets, longest, vertices), True, log)
+
     def for_size(self, size: int) -> Mapped:
         """The mesh refined so that samples and centres are dense enough for so many functions, and its map to X/H."""
-        longest = edge_length_for(self.facets, max(_LEAST_VERTICES, _VERTICES_PER_FUNCTION * size))
+        vertices = max(_LEAST_VERTICES, _VERTICES_PER_FUNCTION * size)
+        longest = even_edge_length(self.facets, vertices)
         if longest not in self.maps:
-            refinement = self.stages("refinement", bisected, self.triangles, longest, True, self.flips)
+            refinement = self.stages("refinement", self._refined, longest, vertices)
             self.maps[longest] = self._mapped(refinement, refinement.polyhedron)
         return self.maps[longest]
 

@@ -30,10 +30,10 @@ def vertex_samples(triangulation: Triangulation, refinement: Bisection, noise: f
     noise: the root mean square error of each coordinate of the vertices, where it is known.
     """
     mesh, coarse = triangulation.polyhedron, refinement.facets
-    area, count = np.linalg.norm(vector_areas(coarse), axis=1), len(coarse.vertices)
+    area, count = np.linalg.norm(vector_areas(coarse), axis=1), len(refinement.coarse.vertices)
     everywhere = places(triangulation).take(np.arange(len(mesh.vertices)))
     weights, values = np.zeros(len(mesh.vertices)), mesh.vertices.copy()
-    weights[:count], values[:count] = _around(coarse, area / 3), coarse.vertices
+    weights[:count], values[:count] = _around(coarse, area / 3)[:count], coarse.vertices[:count]
     share = _around(mesh, np.linalg.norm(vector_areas(mesh), axis=1) / 3)
     length = _lengths(triangulation, refinement, _evened(coarse, area))[: len(mesh.vertices)]
     return _fair(Samples(everywhere.points, values, weights, everywhere.stretch, share, length, 3, noise))
@@ -51,8 +51,8 @@ def semi_smooth_samples(triangulation: Triangulation, refinement: Bisection, spa
     sagitta = _sagittas(coarse, area)
     everywhere = places(triangulation)
     share = 1 / (1 + (_at_samples(triangulation, refinement, sagitta) / (_SAGITTA * spacing)) ** 2)
-    weights, count = everywhere.weights * share, len(coarse.vertices)
-    weights[:count] = np.maximum(weights[:count], _around(coarse, np.where(sagitta > 0, area / 3, 0)))
+    weights, count = everywhere.weights * share, len(refinement.coarse.vertices)
+    weights[:count] = np.maximum(weights[:count], _around(coarse, np.where(sagitta > 0, area / 3, 0))[:count])
     long = np.maximum(_lengths(triangulation, refinement, area), spacing)
     length = np.where(_at_samples(triangulation, refinement, (sagitta > 0).astype(float)) > 0.5, long, spacing)
     values = np.concatenate([flat.vertices, flat.vertices[flat.triangles].mean(axis=1)])

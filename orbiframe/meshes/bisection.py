@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from orbiframe.components.one_line import one_line
 from orbiframe.errors import TopologyError
-from orbiframe.meshes.flat_flips import FlatFlips
+from orbiframe.meshes.edge_log import EdgeLog
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
 from orbiframe.meshes.surface_type import doubled_edges
@@ -20,6 +20,8 @@ Bools = NDArray[np.bool_]
 
 # Meshes without thousands of equal edges round a vertex are refined in 5 to 35 rounds.
 _PATIENCE = 50
+# Triangles for each vertex that is aimed at.
+_MOST = 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,31 +30,27 @@ class Bisection:
 
     coarse, polyhedron: the mesh before and after; its first vertices are the coarse ones. side: (N,), the side across
     which node n of the forest is halved, -1 at a leaf; child: (N,), the first half, the second one follows it, or at
-    a leaf the triangle of the refined mesh. flips: of edges of the coarse mesh, before any is halved; None for no
-    flip. The first nodes are the triangles after the flips.
+    a leaf the triangle of the refined mesh. log: of the edges of the coarse mesh that were flipped or halved before;
+    None for none. The first nodes are the triangles after these steps.
     """
 
     coarse: Polyhedron
     polyhedron: Polyhedron
     side: Ints
     child: Ints
-    flips: FlatFlips | None = None
+    log: EdgeLog | None = None
 
     __repr__ = one_line
 
     @property
     def facets(self) -> Polyhedron:
-        """The coarse mesh after the flips: its triangles are those that are halved."""
-        return self.coarse if self.flips is None else self.flips.after
+        """The coarse mesh after the steps of the log: its triangles are those that are halved."""
+        return self.coarse if self.log is None else self.log.after
 
     def locate(self, face: Ints, barycentric: Floats) -> tuple[Ints, Floats]:
         """The fine triangle (n,) and the barycentric coordinates in it (n, 3) of points of coarse triangles."""
-        if self.flips is None:
-            return self.locate_in_facets(face, barycentric)
-        return self.locate_in_facets(*self.flips.locate(face, barycentric))
-
-    def locate_in_facets(self, face: Ints, barycentric: Floats) -> tuple[Ints, Floats]:
-        """The fine triangle (n,) and the barycentric coordinates in it (n, 3) of points of facets."""
+        if self.log is not None:
+            face, barycentric = self.log.locate(face, barycentric)
         node = np.array(face, dtype=np.intp)
         weights = np.array(barycentric, dtype=np.float64)
         active = np.flatnonzero(self.side[node] >= 0)
@@ -83,8 +81,8 @@ class Bisection:
             node[parents, side] = first[:, 0] @ second[:, 0]
             node[parents, (side + 1) % 3] = second[:, 1]
             node[parents, (side + 2) % 3] = first[:, 2]
-        products = node[: self.coarse.face_count].reshape(-1, *steps.shape[1:])
-        return products if self.flips is None else self.flips.carried_back(products)
+        products = node[: self.facets.face_count].reshape(-1, *steps.shape[1:])
+        return products if self.log is None else self.log.carried_back(products)
 
     def spread(self, corners: Floats) -> Floats:
         """Values at the corners of the facets, (F, 3, k), linearly at the corners of the fine triangles."""
@@ -102,18 +100,19 @@ class Bisection:
         return fine
 
     def origins(self) -> tuple[Ints, Floats]:
-        """A facet (V,) that holds each vertex of the fine mesh, and barycentric coordinates in it (V, 3)."""
-        count = self.coarse.face_count
+        """A coarse triangle (V,) that holds each vertex of the fine mesh, and barycentric coordinates in it (V, 3)."""
+        count = self.facets.face_count
         corners = np.zeros((count, 3, 4))
         corners[:, :, 0], corners[:, :, 1:] = np.arange(count)[:, None], np.eye(3)
         fine = self.spread(corners).reshape(-1, 4)
         first = np.unique(self.polyhedron.tail, return_index=True)[1]
-        return fine[first, 0].round().astype(np.intp), fine[first, 1:]
+        facet, barycentric = fine[first, 0].round().astype(np.intp), fine[first, 1:]
+        return (facet, barycentric) if self.log is None else self.log.led_back(facet, barycentric)
 
     def _levels(self) -> list[Ints]:
         """The nodes of the forest that are halved, those of each depth together, roots first."""
         levels = []
-        node = np.flatnonzero(self.side[: self.coarse.face_count] >= 0)
+        node = np.flatnonzero(self.side[: self.facets.face_count] >= 0)
         while len(node):
             levels.append(node)
             below = np.concatenate([self.child[node], self.child[node] + 1])
@@ -121,12 +120,10 @@ class Bisection:
         return levels
 
 
-def bisected(
-    polyhedron: Polyhedron, longest: float, simplicial: bool = False, flips: FlatFlips | None = None
-) -> Bisection:
+def bisected(polyhedron: Polyhedron, longest: float, simplicial: bool = False, log: EdgeLog | None = None) -> Bisection:
     """The triangle mesh with edges halved until none is longer than `longest`; flat, watertight, same surface.
 
-    flips: of edges of the mesh, done before any is halved.
+    log: of edges of the mesh that are flipped or halved first.
 
     simplicial: loops are halved too, and edges that share both ends with another one, until none is left; a map to X/H
     that is linear on each triangle needs that (see `doubled_edges`).
@@ -142,33 +139,43 @@ def bisected(
         raise TopologyError(f"edges no longer than {longest} were asked for; the length must be positive")
     if (polyhedron.twin < 0).any():
         raise TopologyError("only a closed mesh is refined; `orbiframe info` lists its open edges")
-    state = _State(polyhedron if flips is None else flips.after, simplicial)
+    state = _State(polyhedron if log is None else log.after, simplicial)
     rounds = 0
     while len(edges := state.edges_to_halve(longest, rounds > _PATIENCE)):
         state.halve(edges)
         rounds += 1
-    return Bisection(polyhedron, state.mesh(), state.side, state.child, flips)
+    return Bisection(polyhedron, state.mesh(), state.side, state.child, log)
 
 
 def edge_length_for(polyhedron: Polyhedron, vertices: int) -> float:
-    """The longest edge that gives about so many vertices, spread evenly over the surface.
+    """The longest edge that gives about so many vertices by bisection, spread evenly over the surface.
 
     Needle-like triangles need more: the length is doubled until about ten times as many are enough.
     """
-    areas = np.linalg.norm(vector_areas(polyhedron), axis=1)
-    sides = polyhedron.edge_lengths.reshape(-1, 3).max(axis=1)
-    # Edges end up between half the longest and the longest: a vertex holds about 0.42 of its square.
-    longest = max(float(np.sqrt(areas.sum() / (0.42 * vertices))), 1e-9 * float(sides.max()))
-    while _triangles_made(sides, areas, longest) > 20 * vertices + polyhedron.face_count:
+    return affordable_length(polyhedron, even_edge_length(polyhedron, vertices), vertices)
+
+
+def affordable_length(polyhedron: Polyhedron, longest: float, vertices: int) -> float:
+    """A length, doubled until bisection to it adds no more than about ten times as many vertices as are aimed at."""
+    while triangles_made(polyhedron, longest) > _MOST * vertices + polyhedron.face_count:
         longest *= 2
     return longest
 
 
-def _triangles_made(sides: Floats, areas: Floats, longest: float) -> float:
-    """About how many triangles the bisection makes of triangles with these longest sides and areas, (F,) each.
+def even_edge_length(polyhedron: Polyhedron, vertices: int) -> float:
+    """The longest edge of triangles of about the same size and shape, with so many vertices, over the surface."""
+    area = float(np.linalg.norm(vector_areas(polyhedron), axis=1).sum())
+    # Edges end up between half the longest and the longest: a vertex holds about 0.42 of its square.
+    return max(float(np.sqrt(area / (0.42 * vertices))), 1e-9 * float(polyhedron.edge_lengths.max()))
+
+
+def triangles_made(polyhedron: Polyhedron, longest: float) -> float:
+    """About how many triangles bisection makes of a triangle mesh until no edge is longer than `longest`.
 
     A needle becomes three triangles of half its longest side; once they are round, each becomes four.
     """
+    areas = np.linalg.norm(vector_areas(polyhedron), axis=1)
+    sides = polyhedron.edge_lengths.reshape(-1, 3).max(axis=1)
     halvings = np.log2(np.maximum(sides / longest, 1))
     heights = np.maximum(2 * areas / longest, np.finfo(float).tiny)
     with np.errstate(over="ignore"):

@@ -21,6 +21,10 @@ Bools = NDArray[np.bool_]
 LARGE = 2**20
 
 
+# The units that coordinates may have.
+UNITS = ("millimetre", "metre")
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Polyhedron:
     """A complex of polygons in space, closed or not, orientable or not.

@@ -6,6 +6,7 @@ import io
 import re
 import zipfile
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import hard_surfaces as hard
@@ -17,6 +18,7 @@ from surface_files import changed, with_about, without_sums
 from orbiframe.errors import FormatError, OrbiframeError, UsageError
 from orbiframe.files.surface_file import load_surface, save_surface
 from orbiframe.fitting import pipeline
+from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.surfaces.surface import OrbifoldSurface
 
 NAMES = ["tetrahedron", "projective plane", "Klein bottle", "double torus"]
@@ -63,7 +65,7 @@ def test_a_loaded_surface_evaluates_to_the_same_bits(name: str, tmp_path: Path) 
 def test_flips_of_needles_are_saved(tmp_path: Path) -> None:
     """A plate with triangles without height; a file that flips other edges than those of two triangles is refused."""
     surface = pipeline.fit(hard.with_slivers(hard.plate(1, 2, 2), 0.2, 0.0, 2), config(SIZE), REGISTRY).surface
-    assert len(surface.refinement.flips.halfedge) > 100
+    assert len(surface.refinement.log.halfedge) > 100
     save_surface(surface, tmp_path / "s.npz")
     assert_same_bits(surface, load_surface(tmp_path / "s.npz", REGISTRY))
 
@@ -74,6 +76,42 @@ def test_flips_of_needles_are_saved(tmp_path: Path) -> None:
     refused(lambda arrays: arrays["flip_halfedge"].__iadd__(10**6), "halfedges are 0 to")
     refused(lambda arrays: arrays["flip_halfedge"].__setitem__((5, 1), arrays["flip_halfedge"][5, 0]), "an edge of two")
     refused(lambda arrays: arrays["flip_halfedge"].__setitem__(5, arrays["flip_halfedge"][6]), "the two halfedges are")
+
+
+def test_halved_edges_of_needles_are_saved(tmp_path: Path) -> None:
+    """A fan whose needles are halved on their surface; files that halve others, or elsewhere, are refused."""
+    turn = 2 * np.pi * np.arange(300) / 300
+    prism = [np.stack([np.cos(turn), np.sin(turn), np.full(300, z)], axis=1) for z in (0.0, 2.0)]
+    ring, after = np.arange(300), np.roll(np.arange(300), -1)
+    sides = np.stack([ring, after, 300 + after, 300 + ring], axis=1)
+    faces = [*sides.tolist(), ring[::-1].tolist(), (300 + ring).tolist()]
+    mesh = Polyhedron.from_faces(np.concatenate(prism), faces)
+    surface = pipeline.fit(mesh, config(SIZE), REGISTRY).surface
+    log = surface.refinement.log
+    assert log is not None
+    assert log.halved.sum() > 1000
+    save_surface(surface, tmp_path / "s.npz")
+    assert_same_bits(surface, load_surface(tmp_path / "s.npz", REGISTRY))
+
+    def refused(change: Callable[[dict[str, np.ndarray]], None], law: str) -> None:
+        with pytest.raises(FormatError, match=rf"wild\.npz: the array '{law}"):
+            load_surface(changed(tmp_path / "s.npz", tmp_path / "wild.npz", change), REGISTRY)
+
+    first = int(np.flatnonzero(log.halved)[0])
+    halved, crossing = "flip_halved", "flip_crossing' breaks a law: edges are halved in the middle"
+    refused(lambda arrays: arrays[halved].__setitem__(first, False), "flip_halfedge' breaks a law: halfedges are 0 to")
+    refused(lambda arrays: arrays.pop(halved), "flip_halfedge' breaks a law: halfedges are 0 to")
+    refused(lambda arrays: arrays[halved].__setitem__(slice(None), True), crossing)
+    refused(lambda arrays: arrays["flip_crossing"].__setitem__((first, 0), 0.4), crossing)
+
+
+@pytest.mark.parametrize("unit", [None, "metre"])
+def test_the_unit_is_kept(tmp_path: Path, unit: str | None) -> None:
+    surface = pipeline.fit(replace(mesh_of("cube"), unit=unit), config(30), REGISTRY).surface
+    save_surface(surface, tmp_path / "s.npz")
+    assert load_surface(tmp_path / "s.npz", REGISTRY).tessellate(1).unit == unit
+    with pytest.raises(FormatError, match="'unit' in the array 'about' is none of millimetre, metre"):
+        load_surface(with_about(tmp_path / "s.npz", tmp_path / "wild.npz", unit="cubit"), REGISTRY)
 
 
 @pytest.mark.parametrize("name", ["sphere.off", "torus.off"])

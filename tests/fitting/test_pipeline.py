@@ -209,7 +209,7 @@ def test_a_number_of_functions_that_is_not_positive_is_refused(size: int) -> Non
 
 
 def test_more_functions_than_vertices_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(mapping, "edge_length_for", lambda triangles, vertices: math.inf)
+    monkeypatch.setattr(mapping, "even_edge_length", lambda triangles, vertices: math.inf)
     with pytest.raises(FitError, match="500 functions need as many distinct vertices"):
         pipeline.fit(DATASETS / "sphere.off", config(500), REGISTRY)
 

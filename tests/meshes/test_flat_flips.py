@@ -11,8 +11,9 @@ from scipy.spatial import Delaunay
 
 from orbiframe.fitting import pipeline
 from orbiframe.meshes.bisection import bisected, edge_length_for
+from orbiframe.meshes.edge_log import EdgeLog
 from orbiframe.meshes.face_diagonals import triangulated
-from orbiframe.meshes.flat_flips import FlatFlips, flat_flips
+from orbiframe.meshes.flat_flips import flat_flips
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.surface_type import surface_type
 from orbiframe.testing.polyhedra import reference_polyhedra
@@ -153,7 +154,7 @@ def test_a_part_with_needles_without_height_is_mapped_like_one_without() -> None
 def test_the_flips_are_those_of_the_log() -> None:
     mesh = spoiled(2)
     flips = flat_flips(mesh)
-    again = FlatFlips(mesh, flips.halfedge, flips.crossing)
+    again = EdgeLog(mesh, flips.halfedge, flips.crossing)
     for name in ("tail", "twin", "same"):
         np.testing.assert_array_equal(getattr(again.after, name), getattr(flips.after, name))
 
@@ -163,6 +164,6 @@ def test_flips_of_what_is_no_pair_of_triangles_are_unsound() -> None:
     tail = np.array([0, 1, 0, 0, 2, 0])
     cones = Polyhedron(np.eye(3), np.array([0, 3, 6]), tail, np.array([1, 0, 5, 4, 3, 2]), np.zeros(6, dtype=np.bool_))
     half = np.full((1, 2), 0.5)
-    assert not FlatFlips(cones, np.array([[0, 1]]), half).is_sound
-    assert not FlatFlips(cones, np.array([[0, 5]]), half).is_sound
-    assert FlatFlips(cones, np.array([[2, 5]]), half).is_sound
+    assert not EdgeLog(cones, np.array([[0, 1]]), half).is_sound
+    assert not EdgeLog(cones, np.array([[0, 5]]), half).is_sound
+    assert EdgeLog(cones, np.array([[2, 5]]), half).is_sound
