@@ -13,6 +13,7 @@ from orbiframe.plugin import KINDS, Component
 from orbiframe.testing import Lab, component_laws, contract_tests, laws_of
 from orbiframe.testing.check import check, equipments
 from orbiframe.testing.kit import bound, has_laws, tried
+from orbiframe.words import standard_word
 
 REGISTRY = Registry.discover()
 REGISTRY.register("commands", commands)
@@ -171,3 +172,36 @@ def test_options_are_bound(tmp_path):
     with pytest.raises(ValueError):  # noqa: PT011
         test(laws_of("geometry").laws[0], tmp_path)
     assert seen == [0.4]
+
+
+def test_a_fitter_that_does_not_claim_to_be_linear_is_not_tried(tmp_path):
+    base = type(REGISTRY.load("fitter", "least-squares")())
+    law = next(law for law in laws_of("fitter").laws if law.__name__ == "result_is_linear_in_the_values")
+
+    class Cubed(base):
+        """As good as linear for small values, and not linear."""
+
+        linear = False
+
+        def fit(self, basis, samples):
+            found = super().fit(basis, samples)
+            return found + 1e-3 * found**3
+
+    assert tried(law, Cubed, Lab(tmp_path)).untried == "it does not claim to be linear (Fitter.linear)"
+    Cubed.linear = True
+    assert "differ" in tried(law, Cubed, Lab(tmp_path)).error
+
+
+def test_a_group_that_has_the_word_and_not_the_relations_is_rejected(tmp_path):
+    """The generators of one gluing under the word of another one of the same surface."""
+    regular = REGISTRY.load("group", "regular-polygon")
+
+    def stubborn(geometry, word):
+        group = regular(geometry, standard_word(word.euler_characteristic, word.orientable))
+        group.word = word
+        return group
+
+    verdicts = [tried(law, stubborn, Lab(tmp_path)) for law in laws_of("group").laws]
+    assert any(verdict.error for verdict in verdicts)
+    assert verdicts[0].law == "the_word_is_the_one_asked_for"
+    assert verdicts[0].error is None
