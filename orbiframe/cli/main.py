@@ -12,6 +12,7 @@ from importlib.metadata import version
 
 from orbiframe.cli import plugin as commands
 from orbiframe.cli.blame import named
+from orbiframe.cli.patience import patient
 from orbiframe.cli.progress import Progress, compilation_told
 from orbiframe.cli.speech import any_letter, fill_closed_streams, say, silence
 from orbiframe.components.registry import Registry
@@ -58,9 +59,10 @@ def _run(arguments: list[str]) -> int:
     for plugin, seconds in registry.slow:
         say(f"the plugin '{plugin}' took {seconds:.1f} s to declare itself; it should import nothing heavy for that")
     try:
-        args = parsed(arguments, registry)
-        with compilation_told(quiet=getattr(args, "quiet", False)):
-            return _status(args.run(args, registry), args, registry)
+        with patient(_command(arguments) or "orbiframe", quiet="--quiet" in arguments):
+            args = parsed(arguments, registry)
+            with compilation_told(quiet=getattr(args, "quiet", False)):
+                return _status(args.run(args, registry), args, registry)
     except Exception as error:
         told = named(error, registry)
         if told is error:
@@ -82,7 +84,7 @@ def parsed(arguments: list[str], registry: Registry) -> argparse.Namespace:
     What takes long is told to `args.progress`, a stage at a time: (name, None), then (name, seconds).
     Raises UsageError for an unknown command and SystemExit for wrong arguments.
     """
-    chosen = next((word for word in arguments if not word.startswith("-")), None)
+    chosen = _command(arguments)
     parser = _parser(registry, chosen)
     if chosen is not None:
         registry.component("command", chosen)
@@ -91,6 +93,10 @@ def parsed(arguments: list[str], registry: Registry) -> argparse.Namespace:
     args.command = chosen
     args.progress = Progress(quiet=getattr(args, "quiet", False))
     return args
+
+
+def _command(arguments: list[str]) -> str | None:
+    return next((word for word in arguments if not word.startswith("-")), None)
 
 
 def _print_help(parser: argparse.ArgumentParser) -> int:
