@@ -8,6 +8,7 @@ import sys
 import traceback
 import warnings
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib.metadata import version
 
 from orbiframe.cli import plugin as commands
@@ -104,8 +105,13 @@ def _print_help(parser: argparse.ArgumentParser) -> int:
     return 0
 
 
-def _parser(registry: Registry, chosen: str | None) -> argparse.ArgumentParser:
-    """The parser of all commands; only the chosen one is imported and has its arguments."""
+def whole_parser(registry: Registry) -> argparse.ArgumentParser:
+    """The parser of all commands with all their arguments; commands that cannot be imported have none."""
+    return _parser(registry, None, whole=True)
+
+
+def _parser(registry: Registry, chosen: str | None, *, whole: bool = False) -> argparse.ArgumentParser:
+    """The parser of all commands; only the chosen one is imported and has its arguments, or all."""
     parser = argparse.ArgumentParser("orbiframe", description=_description(), epilog=EPILOG)
     parser.add_argument("--version", action="version", version=f"orbiframe {version('orbiframe')}")
     _add_debug(parser, False)
@@ -115,6 +121,9 @@ def _parser(registry: Registry, chosen: str | None) -> argparse.ArgumentParser:
         _add_debug(sub, argparse.SUPPRESS)
         if component.name == chosen:
             registry.load("command", component.name)(sub)
+        elif whole:
+            with suppress(PluginError):
+                registry.load("command", component.name)(sub)
     return parser
 
 
