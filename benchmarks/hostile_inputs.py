@@ -28,7 +28,7 @@ from typing import Any
 
 import numpy as np
 
-from orbiframe import Config, OrbiframeError, Registry, fit, load_surface, save_surface
+from orbiframe import Config, OrbiframeError, Polyhedron, Registry, fit, load_surface, save_surface
 from orbiframe.cli.main import main as command_line
 from orbiframe.fitting import mapping
 from orbiframe.testing.polyhedra import reference_polyhedra
@@ -40,6 +40,7 @@ SURFACES = {
     "torus": ["basis.name=ps2"],
     "Klein bottle": ["basis.name=tensor-bspline"],
     "projective plane": ["basis.name=argyris"],
+    "needles": [],
 }
 Outcome = str
 Case = Callable[[np.random.Generator], Outcome]
@@ -50,12 +51,21 @@ Case = Callable[[np.random.Generator], Outcome]
 
 def make_surfaces(folder: Path, registry: Registry) -> list[Path]:
     """Fit and save the surfaces that are changed."""
-    paths = []
+    paths, meshes = [], reference_polyhedra() | {"needles": needles(300)}
     for number, (name, more) in enumerate(SURFACES.items()):
         config = Config.load(overrides=["basis.size=30", "output.refine=1", *more])
         paths.append(folder / f"surface{number}.npz")
-        save_surface(fit(reference_polyhedra()[name], config, registry).surface, paths[-1])
+        save_surface(fit(meshes[name], config, registry).surface, paths[-1])
     return paths
+
+
+def needles(count: int) -> Polyhedron:
+    """A double pyramid, whose needles are halved on their surface."""
+    turn = 2 * np.pi * np.arange(count) / count
+    rim = np.stack([np.cos(turn), np.sin(turn), np.zeros(count)], axis=1)
+    ring, after = np.arange(count), np.roll(np.arange(count), -1)
+    sides = [np.stack(pair, axis=1) for pair in ((ring, after, ring * 0 + count), (after, ring, ring * 0 + count + 1))]
+    return Polyhedron.from_faces(np.concatenate([rim, [[0, 0, 1], [0, 0, -1]]]), np.concatenate(sides))
 
 
 def values_of(path: Path, registry: Registry) -> bytes:
