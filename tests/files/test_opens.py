@@ -29,7 +29,6 @@ sys.addaudithook(_listen)
 """
 READ = """
 import json, sys, warnings
-from importlib.util import find_spec
 from pathlib import Path
 from orbiframe import FormatError, PluginError, UsageError
 from orbiframe.files import gate
