@@ -53,6 +53,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--refine", metavar="K", type=int, help="K*K output triangles for each input triangle (output.refine)")
     add("--faces", metavar="N", type=int, help="to CAD: about so many B-spline faces; default as the topology suggests")
     add("--export-tolerance", metavar="T", type=float, help="of these faces, of the box's diagonal; default 1e-4")
+    add("--conforming", action="store_true", help="to G+Smo (.xml): neighbouring patches have the same knots")
     add("--exact", action="store_true", help="to CAD: the exact patches of --basis ps2, ps6 and others")
     add("--order", metavar="Q", type=int, help="write curved triangles of order 1 to 6, for finite elements")
     add("--format", metavar="NAME", help="with --order: the format, such as gmsh-2.2, instead of that of the suffix")
@@ -170,7 +171,7 @@ def _shortcomings(found: dict[str, Any]) -> Iterator[str]:
             f"the faces of the file are {found['error']:.1e} of the diagonal from the surface, and neighbours meet at "
             f"{found['angle']:.2f}° near ({place}), where the surface may be pinched; try more --faces"
         )
-    if not found["valid"]:
+    if not found.get("valid", True):
         yield (
             "Open CASCADE does not find the shape of the file valid, as where a surface is pinched or passes through "
             "itself on an edge; try another number of --faces"
@@ -207,33 +208,35 @@ def _few_faces(args: argparse.Namespace, config: Config, registry: Registry) -> 
 
     Functions that have exact patches give these unless faces are asked for.
     """
-    from orbiframe.files.gate import exports
-
     asked = args.faces is not None or args.export_tolerance is not None
-    makes = _makes_faces(args.output, registry)
+    known = _exporter_options(args.output, registry)
+    makes = known is not None and "faces" in known
     if asked and (args.exact or not makes):
         raise UsageError(f"{args.output}: --faces and --export-tolerance are for CAD, as part.step, without --exact")
-    if args.exact and not exports(args.output, registry):
+    if args.exact and (known is None or (makes and "exact" not in known)):
         raise UsageError(f"{args.output}: --exact is for files that hold exact surfaces, such as part.step")
-    if not makes or args.exact or (_piecewise(config, registry) and not asked):
+    if args.conforming and (known is None or "conforming" not in known):
+        raise UsageError(f"{args.output}: --conforming is for patches of G+Smo, as patches.xml")
+    if known is None or not makes or args.exact or (_piecewise(config, registry) and not asked and "exact" in known):
         return None
     if args.faces is not None and not 1 <= args.faces <= _MOST_FACES:
         raise UsageError(f"--faces {args.faces}: give 1 to {_MOST_FACES}")
     tolerance = 1e-4 if args.export_tolerance is None else args.export_tolerance
     if not _LEAST_TOLERANCE <= tolerance < 1:
         raise UsageError(f"--export-tolerance {tolerance:g}: give {_LEAST_TOLERANCE:g} to 1, of the box's diagonal")
-    return {"exact": False, "faces": args.faces or 0, "tolerance": tolerance}
+    options = {"exact": False, "faces": args.faces or 0, "tolerance": tolerance, "conforming": args.conforming}
+    return {name: value for name, value in options.items() if name in known}
 
 
-def _makes_faces(path: Path, registry: Registry) -> bool:
-    """Whether the exporter of a suffix, if there is one, has an option for the number of faces."""
+def _exporter_options(path: Path, registry: Registry) -> set[str] | None:
+    """The names of the options of the exporter of a suffix; None if there is none."""
     from orbiframe.components.options import options_of
     from orbiframe.files.gate import component_name, exports
 
     if not exports(path, registry):
-        return False
+        return None
     exporter = registry.load("exporter", component_name(path, registry, "exporter", None))
-    return any(option.name == "faces" for option in options_of(exporter))
+    return {option.name for option in options_of(exporter)}
 
 
 def _piecewise(config: Config, registry: Registry) -> bool:

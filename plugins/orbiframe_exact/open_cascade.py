@@ -26,6 +26,7 @@ from orbiframe.surfaces import PeriodicPatch, patches_of
 from orbiframe_exact.faces_of_surface import described, fitted
 from orbiframe_exact.shapes import shape_of
 from orbiframe_exact.spline_shapes import spline_shape
+from orbiframe_exact.step_text import shorter
 
 # Files have no time of day and no path, so that one surface always gives the same bytes.
 _TIME = "1970-01-01T00:00:00"
@@ -56,6 +57,8 @@ def write_step(
     _require(writer.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone, "convert the shape to STEP")
     _sign_step(writer)
     _require(writer.Write(str(path)) == IFSelect_RetDone, "write the STEP file")
+    if not exact:
+        Path(path).write_text(shorter(Path(path).read_text(encoding="ascii")), encoding="ascii")
     return found
 
 
