@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.components.one_line import one_line
 from orbiframe.errors import FitError
 from orbiframe.meshes.edge_paths import covering_points, dijkstra_forest, edge_graph
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -45,6 +46,8 @@ class Samples:
     length: Floats | None = None
     order: int = 2
     noise: float | None = None
+
+    __repr__ = one_line
 
     def __post_init__(self) -> None:
         count = len(self.points.patch)
