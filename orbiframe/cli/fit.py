@@ -43,6 +43,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--map", metavar="NAME", help="the map to X/H, such as equivariant (map.method)")
     add("--basis", metavar="NAME", help="the functions, such as ps6 or gaussian (basis.name)")
     add("--data", metavar="MEANS", help="what the mesh means: smooth, semi-smooth or facets; default auto (data.means)")
+    add(
+        "--creases",
+        metavar="ANGLE",
+        type=float,
+        help="edges that bend by ANGLE degrees or more stay sharp (data.creases)",
+    )
     add("--fast", action="store_true", help="one linear fit on one map (fitter.name=least-squares, data.lift=false)")
     add("--shape", metavar="NAME", help="makes faces regular in X/H, such as regular-faces (shape.method)")
     add(
@@ -146,7 +152,7 @@ def _write_elements(
     found.report["seconds"]["elements"] = round(time.perf_counter() - start, 4)
     progress("elements", found.report["seconds"]["elements"])
     other = any(part.gluing is not surface.refinement.coarse for part, surface in zip(faces, surfaces, strict=True))
-    if other and not args.quiet:
+    if other and not args.quiet and all(surface.triangulation.crease is None for surface in surfaces):
         say("triangles of the input fold as geodesic triangles, so the elements are Delaunay triangles of its vertices")
     return f"{len(mesh.elements)} triangles of order {mesh.order}, {len(mesh.nodes)} nodes, {_size(args.output)}"
 
@@ -210,6 +216,7 @@ def overrides(args: argparse.Namespace) -> list[str]:
         "output.tolerance": args.tolerance,
         "output.max_error": args.max_error,
         "data.means": args.data,
+        "data.creases": args.creases,
         "output.refine": args.refine,
     }
     fast = ["fitter.name=least-squares", "data.lift=false"] if args.fast else []
@@ -223,7 +230,10 @@ def _export_options(args: argparse.Namespace, config: Config, registry: Registry
     if known is None:
         return None
     options: dict[str, object] = {"unit": args.unit or "mm", "name": args.mesh.stem}
-    if "faces" in known and not args.exact:
+    asked = args.faces is not None or args.export_tolerance is not None
+    if "faces" in known and not args.exact and (config.data.creases is None or asked or "exact" not in known):
+        if config.data.creases is not None:
+            raise UsageError("few faces round creases off; write the exact patches, to part.step with --exact")
         options |= {"exact": False, "conforming": args.conforming, **_faces(args)}
     elif not _piecewise(config, registry):
         return None

@@ -65,6 +65,7 @@ def _lines(report: Mapping[str, Any], written: str | None) -> Iterator[tuple[str
     yield "fit", f"{fit['basis']}, {fit['size']} functions, {fit['samples']} samples, {fit['fitter']}"
     yield "error", f"rms {fit['rms']:.2e}, max {fit['max']:.2e} of the bounding-box diagonal"
     yield from _distances(report["distance"])
+    yield from _creases(report.get("creases"))
     yield from (("warning", note) for note in report["notes"])
     yield from _ending(report, written)
 
@@ -84,6 +85,21 @@ def _distances(distance: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     words = (f"{name} {distance[key]['rms']:.2e} (max {distance[key]['max']:.2e})" for key, name in parts)
     place = ", ".join(f"{x:.4g}" for x in distance["mesh_to_surface"]["place"])
     yield "distance", f"{', '.join(words)}; farthest at ({place})"
+
+
+def _creases(creases: Mapping[str, Any] | None) -> Iterator[tuple[str, str]]:
+    """The creases that were kept, if any, and how well."""
+    if creases is not None:
+        curves, corners = (
+            _counted(creases["curves"], "curve", "curves"),
+            _counted(creases["corners"], "corner", "corners"),
+        )
+        ends, (kink, worst) = _counted(creases["ends"], "end", "ends"), creases["kinks"]
+        yield (
+            "creases",
+            f"{curves} of {creases['angle_from']:g}° or more, {corners}, {ends}; within {creases['distance']:.1e}, "
+            f"angles off by {creases['angle']:.2g}°, kinks beside them {kink:.2g}° (max {worst:.2g}°)",
+        )
 
 
 def _crowding(crowding: Mapping[str, float]) -> Iterator[tuple[str, str]]:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from orbiframe.delaunay.crease_domain import crease_triangulation
 from orbiframe.delaunay.site_triangulation import delaunay_of_vertices
 from orbiframe.delaunay.sites import lloyd
 from orbiframe.delaunay.voronoi import region_areas
@@ -70,17 +71,24 @@ def domain_for(
     triangulation: Triangulation | GeodesicTriangulation,
     size: int,
     unknowns: tuple[int, int, int],
+    *,
+    creases: bool = False,
 ) -> GeodesicTriangulation:
     """The domain for about `size` functions, so many for each vertex, edge and triangle as `unknowns` says.
 
     A geodesic triangulation is taken as it is. From the map of a mesh a domain is made with V vertices, where V
     follows from E = 3 (V - chi) and F = 2 (V - chi); in S^2 and H^2 with more vertices, hence functions, if need be,
-    see `fewest_vertices`. Raises FitError for a triangulation of another orbifold.
+    see `fewest_vertices`. That of a map with creases has the sites of the map. creases: whether the functions keep
+    creases. Raises FitError for a triangulation of another orbifold, and for one with creases that are not kept.
     """
     if triangulation.orbifold is not orbifold:
         raise FitError("the triangulation belongs to another orbifold than the functions; pass triangulation.orbifold")
+    if triangulation.crease is not None and not creases:
+        raise FitError("these functions are smooth everywhere and keep no creases; take basis.name = 'ps2' or another")
     if isinstance(triangulation, GeodesicTriangulation):
         return triangulation
+    if triangulation.crease is not None:
+        return crease_triangulation(triangulation)
     at_vertex, on_edge, in_face = unknowns
     per_vertex = at_vertex + 3 * on_edge + 2 * in_face
     fixed = orbifold.euler_characteristic * (3 * on_edge + 2 * in_face)

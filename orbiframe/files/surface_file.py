@@ -24,6 +24,7 @@ from orbiframe.files.surface_laws import (
     BrokenLaw,
     require,
     require_atlas,
+    require_creases,
     require_map,
     require_mesh,
     require_refinement,
@@ -82,6 +83,8 @@ _SHAPES: dict[str, tuple[type, tuple[int | str, ...]]] = {
 # Arrays that some surfaces have.
 _OPTIONAL: dict[str, tuple[type, tuple[int | str, ...]]] = {
     "density": (np.float64, ("W",)),
+    "crease": (np.bool_, ("I",)),
+    "sites": (np.intp, ("S",)),
     "flip_halfedge": (np.intp, ("L", 2)),
     "flip_crossing": (np.float64, ("L", 2)),
     "flip_halved": (np.bool_, ("L",)),
@@ -208,8 +211,10 @@ def _surface(arrays: Arrays, about: About, registry: Components, path: Path) -> 
     density = arrays.get("density")
     if density is not None:
         require(np.isfinite(density) & (density > 0), "density", "numbers are finite and positive")
-    triangulation = Triangulation(orbifold, fine, *places, about["group"], about["weights"], density)
+    marks = arrays.get("crease"), arrays.get("sites")
+    triangulation = Triangulation(orbifold, fine, *places, about["group"], about["weights"], density, *marks)
     require_map(triangulation)
+    require_creases(triangulation)
     coefficients, origin, scale = arrays["coefficients"], arrays["origin"], float(arrays["scale"])
     for name in ("coefficients", "origin", "scale"):
         require(np.isfinite(arrays[name]), name, "numbers are finite")
@@ -304,4 +309,5 @@ def _optional(surface: OrbifoldSurface) -> dict[str, NDArray[Any] | None]:
     log = surface.refinement.log
     steps = {} if log is None else {"flip_halfedge": log.halfedge, "flip_crossing": log.crossing}
     halved = {} if log is None or not log.halved.any() else {"flip_halved": log.halved}
-    return {"density": surface.triangulation.density, **steps, **halved}
+    flat = surface.triangulation
+    return {"density": flat.density, "crease": flat.crease, "sites": flat.sites, **steps, **halved}

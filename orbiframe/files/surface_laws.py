@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.delaunay.crease_domain import crease_triangulation, off_geodesics
 from orbiframe.errors import OrbiframeError
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.edge_log import EdgeLog
@@ -184,6 +185,29 @@ def require_map(triangulation: Triangulation) -> None:
         require(folded == 0, "points", f"no triangle is folded over; {folded} are")
         require(triangulation.area_defect <= _ROUGHLY, "area", "it is the sum of the areas of the triangles")
     _require_area(triangulation)
+
+
+def require_creases(triangulation: Triangulation) -> None:
+    """Creases that are whole edges, and run along geodesics from site to site of the domain of the functions."""
+    crease, sites, mesh = triangulation.crease, triangulation.sites, triangulation.polyhedron
+    require((crease is None) == (sites is None), "sites", "there are sites if there are creases, and only then")
+    if crease is None or sites is None:
+        return
+    count = len(mesh.vertices)
+    require(crease[mesh.twin] == crease, "crease", "both halfedges of an edge are on a crease, or none is")
+    require(crease.any(), "crease", "there is a crease")
+    require((sites >= 0) & (sites < count), "sites", f"vertices are 0 to {count - 1}")
+    require(np.diff(np.sort(sites)) > 0, "sites", "they are different")
+    ends = np.concatenate([mesh.tail, mesh.head])[np.tile(crease & mesh.representative, 2)]
+    degree = np.bincount(ends, minlength=count)
+    require(
+        np.isin(np.flatnonzero((degree > 0) & (degree != 2)), sites), "sites", "ends and corners of creases are sites"
+    )
+    require(off_geodesics(triangulation) <= _NEAR, "points", "creases run along geodesics from site to site")
+    try:
+        crease_triangulation(triangulation)
+    except OrbiframeError as error:
+        raise BrokenLaw("sites", f"their Delaunay triangulation has the creases as edges; {error}") from error
 
 
 def _squares(points: Floats) -> Floats:

@@ -89,12 +89,17 @@ def _seen(surface: OrbifoldSurface, samples: Samples) -> tuple[Floats, Floats, F
     u, v = foot_step(jets, targets, spacing).T[..., None]
     slopes = jets[1] + u * jets[3] + v * jets[4], jets[2] + u * jets[4] + v * jets[5]
     way = u * (jets[1] + slopes[0]) / 2 + v * (jets[2] + slopes[1]) / 2
-    away = np.linalg.norm(targets - jets[0] - way, axis=1)
+    left, normals = targets - jets[0] - way, np.cross(*slopes)
+    away = np.linalg.norm(left, axis=1)
+    if surface.triangulation.crease is not None:
+        # Beside a crease parameters change fast along the surface, which is no distance from it.
+        size = np.maximum(np.linalg.norm(normals, axis=1), np.finfo(float).tiny)
+        away = np.abs(np.einsum("ni,ni->n", left, normals)) / size
     far = (np.linalg.norm(way, axis=1) > _NEAR * spacing) | (away >= np.quantile(away, 1 - _WORST))
     chosen = np.append(np.arange(len(surface.refinement.coarse.vertices)), np.flatnonzero(far))
     start = samples.take(chosen)
     away[chosen] = foot_points(basis, coefficients, start.points, start.values, spacing)[1]
-    return jets[0], away, np.cross(*slopes)
+    return jets[0], away, normals
 
 
 def _tilt(normals: Floats, vectors: Floats) -> float:

@@ -65,15 +65,16 @@ class Approximations:
         """The surface of so many functions; of more if they cannot follow the map and no number is asked for."""
         mapped = self.mapping.for_size(size)
         mapped = mapped if density is None else mapped.with_density(density.on(mapped.refinement))
+        mapped = self._creased(mapped, size)
         energy = girth(mapped.triangulation).energy
         basis = self._basis(mapped, size)
         needed = size_needed(basis, energy)
         if needed > basis.size and self._given_size is None:
             return self.of_size(max(needed, basis.size + 100), density)
-        meaning = meaning_of(self.mapping.facets, self.config.data.means, size)
+        meaning = meaning_of(self.mapping.facets, self.config.data.means, size, self.config.data.creases)
         notes = () if needed <= basis.size else (too_few(basis.size, needed),)
         try:
-            if meaning.smooth and self.config.data.lift:
+            if meaning.smooth and self.config.data.lift and self.config.data.creases is None:
                 mapped = self._lifted(mapped, basis, meaning)
                 basis = self._basis(mapped, size)
             fitter = self._fitter()
@@ -110,6 +111,14 @@ class Approximations:
         energy = girth(self.mapping.for_size(LEAST_SIZE).triangulation).energy
         chi = self.mapping.surface_type.euler_characteristic
         return default_size(energy, len(self.mapping.triangles.vertices), chi)
+
+    def _creased(self, mapped: Mapped, size: int) -> Mapped:
+        """The map with creases, if they are to stay."""
+        if self.config.data.creases is None:
+            return mapped
+        unknowns = self.stages.registry.load("basis", self.config.basis.name).crease_unknowns  # type: ignore[attr-defined]
+        creased: Mapped = self.stages("creases", self.mapping.creased, mapped, size, unknowns)
+        return creased
 
     def _basis(self, mapped: Mapped, size: int) -> Basis:
         make = self._sized(size).component("basis", self.stages.registry)

@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
-from annotated_types import Ge, Gt
+from annotated_types import Ge, Gt, Le
 
 from orbiframe.components.options import Option, checked_options, checked_value, options_of, place_of, require_known
 from orbiframe.components.registry import Registry
@@ -54,13 +54,18 @@ class Data:
     means: "facets", the polyhedron is the truth; "smooth", its vertices lie on a smooth surface; "semi-smooth", so they
     do where facets are curved; "auto" decides by its bends. lift: whether a smooth mesh is mapped again after it has
     been lifted onto its first surface. noise: the root mean square error of each coordinate of the vertices of a smooth
-    mesh, relative to the diagonal of the bounding box; None: found from the vertices.
+    mesh, relative to the diagonal of the bounding box; None: found from the vertices. creases: edges that bend by so
+    many degrees or more stay sharp; None: none does.
     """
 
     means: Literal["auto", "smooth", "semi-smooth", "facets"] = "auto"
     lift: bool = True
     noise: Annotated[float, Gt(0)] | None = None
+    creases: Annotated[float, Gt(0), Le(180)] | None = None
 
+
+# The basis if nothing is said and creases are kept.
+CREASED_BASIS = "clough-tocher"
 
 # Table of the configuration: the kind of its component, the key that names it, and the name if nothing is said.
 STEPS = {
@@ -130,9 +135,11 @@ class Config:
         for table in tables:
             require_table(table, (*TABLES, "plugins"), places)
         files = checked_value(tuple[str, ...], tables.get("plugins", []), "plugins", places)
-        steps = {table: _step(table, _table(tables, table, places), places) for table in STEPS}
         output = Output(**checked_options(Output, _table(tables, "output", places), "output", places))
         data = Data(**checked_options(Data, _table(tables, "data", places), "data", places))
+        if data.creases is not None:
+            tables = {**tables, "basis": {"name": CREASED_BASIS, **_table(tables, "basis", places)}}
+        steps = {table: _step(table, _table(tables, table, places), places) for table in STEPS}
         return cls(steps, output, data, tuple(folder / file for file in files), places)
 
     @property
@@ -229,7 +236,24 @@ class Config:
                 self.component(table, registry)
             elif step.options:
                 _require_option_of_kind(table, step, registry, self.places)
+        if self.data.creases is not None:
+            _require_creased(self.basis.name, registry, self.places)
         return self
+
+
+def _require_creased(name: str, registry: Registry, places: Mapping[str, str]) -> None:
+    """Raise ConfigError for functions that are smooth everywhere."""
+    if getattr(registry.load("basis", name), "crease_unknowns", None) is not None:
+        return
+    known = []
+    for component in registry.components("basis"):
+        with suppress(PluginError):
+            if getattr(registry.load("basis", component.name), "crease_unknowns", None) is not None:
+                known.append(component.name)
+    raise ConfigError(
+        f"{place_of('basis.name', places)}the functions '{name}' keep no creases (data.creases); those that do: "
+        f"{', '.join(known)}"
+    )
 
 
 def _table(tables: Mapping[str, Any], name: str, places: Mapping[str, str]) -> Mapping[str, Any]:

@@ -49,6 +49,8 @@ _RESULT_MEANINGS = {
     "data.noise": "root mean square error of each coordinate of the vertices of a smooth mesh, relative to the "
     "diagonal of the bounding box; if not given, the fairing is found from the vertices by cross-"
     "validation",
+    "data.creases": "edges of the mesh that bend by so many degrees or more stay sharp; if not given, the surface is smooth "
+    "everywhere",
     "output.refine": "every triangle of the input becomes refine² triangles; if not given, the refined mesh is "
     "cut, about 40 000 triangles in all, of even size",
     "output.tolerance": "largest root mean square error, relative to the diagonal of the bounding box; if given, "

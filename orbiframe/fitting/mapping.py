@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.components.geometry_names import geometry_name
-from orbiframe.errors import MapError
+from orbiframe.components.options import place_of
+from orbiframe.delaunay.crease_domain import creased
+from orbiframe.errors import ConfigError, MapError
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.content import content_key, mesh_key, source_key
 from orbiframe.fitting.made import made
@@ -20,6 +22,7 @@ from orbiframe.fitting.stages import Stages
 from orbiframe.groups.group import Group
 from orbiframe.groups.marked_group import MarkedGroup
 from orbiframe.groups.marking import Marking
+from orbiframe.meshes.bending import bending, sharp_edges
 from orbiframe.meshes.bisection import Bisection, affordable_length, bisected, even_edge_length, triangles_made
 from orbiframe.meshes.edge_log import EdgeLog
 from orbiframe.meshes.flat_flips import flat_flips
@@ -86,9 +89,16 @@ class Mapping:
         return self.triangles if self.flips is None else self.flips.after
 
     def _refined(self, longest: float, vertices: int) -> Bisection:
-        """The mesh with no edge longer than `longest`; needles by the thousand are not halved each for itself."""
-        log, made = self.flips, triangles_made(self.facets, longest)
-        if log is not None and made > _NEEDLES * vertices + self.facets.face_count:
+        """The mesh with no edge longer than `longest`; needles by the thousand are not halved each for itself.
+
+        Where creases are kept, they are: a crease stays a chain of edges.
+        """
+        log, expected = self.flips, triangles_made(self.facets, longest)
+        if (
+            log is not None
+            and self.config.data.creases is None
+            and expected > _NEEDLES * vertices + self.facets.face_count
+        ):
             log = intrinsic_refinement(log, longest, _MOST * vertices)
         facets = self.triangles if log is None else log.after
         return bisected(self.triangles, affordable_length(facets, longest, vertices), True, log)
@@ -101,6 +111,25 @@ class Mapping:
             refinement = self.stages("refinement", self._refined, longest, vertices)
             self.maps[longest] = self._mapped(refinement, refinement.polyhedron)
         return self.maps[longest]
+
+    def creased(self, mapped: Mapped, size: int, unknowns: tuple[int, int, int]) -> Mapped:
+        """The map with creases where the mesh is sharp, for about `size` functions; see `data.creases`."""
+        found = creased(mapped.triangulation, self._sharp(mapped.refinement.polyhedron), size, unknowns)
+        unshaped = mapped.first.points is mapped.triangulation.points
+        return mapped._replace(first=found if unshaped else mapped.first, triangulation=found)
+
+    def _sharp(self, mesh: Polyhedron) -> NDArray[np.bool_]:
+        """The creases of the refined mesh. Raises ConfigError where there is none."""
+        degrees = self.config.data.creases
+        assert degrees is not None
+        found = sharp_edges(mesh, degrees)
+        if not found.any():
+            sharpest = float(np.degrees(bending(mesh).angle.max()))
+            raise ConfigError(
+                f"{place_of('data.creases', self.config.places)}no edge of the mesh bends by {degrees:g}° or more (the "
+                f"sharpest by {sharpest:.1f}°), so that there is no crease; take a smaller angle, or leave it out"
+            )
+        return found
 
     def of_lifted(self, mapped: Mapped, lifted: Polyhedron) -> Mapped:
         """The map of the refined mesh with its vertices moved; the one before, if those cannot be mapped."""

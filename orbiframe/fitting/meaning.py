@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from orbiframe.functions.samples import Samples, coordinate_samples
+from orbiframe.functions.samples_of_sides import crease_samples
 from orbiframe.functions.smooth_samples import semi_smooth_samples, vertex_samples
-from orbiframe.meshes.bending import bending
+from orbiframe.meshes.bending import bending, sharp_edges
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
 from orbiframe.triangulations.triangulation import Triangulation
 
 SMOOTH, SEMI_SMOOTH, FACETS = "smooth", "semi-smooth", "facets"
+# Which facets beside creases stand for something curved.
+_CURVED: dict[str, Literal["none", "bent", "all"]] = {FACETS: "none", SEMI_SMOOTH: "bent", SMOOTH: "all"}
 MEANINGS = ("auto", SMOOTH, SEMI_SMOOTH, FACETS)
 
 # Up to this share of its bending in sharp edges a mesh is taken for smooth, from the other one on for its facets.
 _SMOOTH, _SHARP = 0.20, 0.45
+# Beside creases nothing bends if no more than this share does.
+_FLAT = 1e-6
 # So many samples of facets are enough; a mesh of needles would have many more than functions can tell apart.
 _LEAST_SAMPLES, _SAMPLES_PER_FUNCTION = 250_000, 100
 
@@ -37,22 +42,28 @@ class Meaning(NamedTuple):
         self, triangulation: Triangulation, refinement: Bisection, size: int, noise: float | None = None
     ) -> Samples:
         """What is approximated, by so many functions; noise: the rms error of a coordinate of a vertex, if known."""
+        area = vector_areas(refinement.coarse)
+        spacing = float(((area**2).sum(axis=1) ** 0.5).sum() / size) ** 0.5
+        if triangulation.crease is not None:
+            return crease_samples(triangulation, refinement, spacing, curved=_CURVED[self.name])
         if self.name == FACETS:
             return coordinate_samples(triangulation, max(_LEAST_SAMPLES, _SAMPLES_PER_FUNCTION * size))
         if self.name == SMOOTH:
             return vertex_samples(triangulation, refinement, noise)
-        area = vector_areas(refinement.coarse)
-        return semi_smooth_samples(triangulation, refinement, float(((area**2).sum(axis=1) ** 0.5).sum() / size) ** 0.5)
+        return semi_smooth_samples(triangulation, refinement, spacing)
 
 
-def meaning_of(mesh: Polyhedron, asked: str, size: int) -> Meaning:
+def meaning_of(mesh: Polyhedron, asked: str, size: int, creases: float | None = None) -> Meaning:
     """What a triangle mesh stands for, as asked or found from the bends of its edges.
 
-    size: the number of functions; where it is less than that of the vertices, those say where the facets are.
+    size: the number of functions; where it is less than that of the vertices, those say where the facets are; creases:
+    from how many degrees on edges stay sharp: then what bends less is curved.
     """
     share = bending(mesh).share
     if asked != "auto":
         return Meaning(asked, share, "as asked")
+    if creases is not None:
+        return _beside_creases(mesh, share, creases)
     percent = f"{100 * share:.0f} % of its bending lies in edges of more than 40°"
     if share <= _SMOOTH:
         return Meaning(SMOOTH, share, percent)
@@ -61,3 +72,11 @@ def meaning_of(mesh: Polyhedron, asked: str, size: int) -> Meaning:
     if len(mesh.vertices) > size:
         return Meaning(FACETS, share, f"{percent}, and it has more vertices than there are functions")
     return Meaning(SEMI_SMOOTH, share, percent)
+
+
+def _beside_creases(mesh: Polyhedron, share: float, creases: float) -> Meaning:
+    """Facets where nothing bends but creases; otherwise what bends is curved, and what does not is flat."""
+    amount = mesh.edge_lengths * bending(mesh).angle
+    rest = float(amount[~sharp_edges(mesh, creases)].sum() / max(amount.sum(), 1e-300))
+    reason = f"{100 * (1 - rest):.0f} % of its bending lies in creases of {creases:g}° or more"
+    return Meaning(SEMI_SMOOTH if rest > _FLAT else FACETS, share, reason)

@@ -17,6 +17,7 @@ from orbiframe.meshes.face_diagonals import RULE
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
 from orbiframe.meshes.surface_type import SurfaceType
+from orbiframe.surfaces.crease_quality import crease_quality
 from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.triangulations.face_shapes import FaceShapes
 from orbiframe.triangulations.local_girth import girth_radius
@@ -39,6 +40,7 @@ def report(
     """All that a user should know of a fit, with plain numbers and strings only."""
     triangulation = surface.triangulation
     area_in_space = float(np.linalg.norm(vector_areas(triangulation.polyhedron), axis=1).sum())
+    quality = crease_quality(surface)
     rms, largest = found.accuracy.against(found.meaning.smooth)
     return {
         "surface": {
@@ -79,7 +81,8 @@ def report(
             "girth": girth_radius(found.mapped.triangulation),
             "spacing": float(np.sqrt(area_in_space / surface.basis.size)),
         },
-        "notes": [*found.notes, *inspection.notes(output)],
+        "creases": None if quality is None else quality._asdict() | {"angle_from": config.data.creases},
+        "notes": [*found.notes, *inspection.notes(output), *(() if quality is None else quality.notes())],
         "output": {
             "vertices": len(output.vertices),
             "faces": output.face_count,

@@ -11,4 +11,5 @@ from .fitter import Fitter as Fitter, ValidatedFit as ValidatedFit, ValidatedFit
 from .jet_quotient import divide_jets as divide_jets
 from .orbit_sum_basis import OrbitSumBasis as OrbitSumBasis
 from .samples import Samples as Samples, coordinate_samples as coordinate_samples
+from .samples_of_sides import Sides as Sides, crease_samples as crease_samples
 from .smooth_samples import semi_smooth_samples as semi_smooth_samples, vertex_samples as vertex_samples

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,12 +23,15 @@ class Basis(ABC):
     """Functions b_1, ..., b_size on X/H.
 
     A basis is built by `(orbifold, triangulation, *, options)`; the same input gives the same basis, bit for bit.
-    smoothness: the number of continuous derivatives (math.inf for C^infinity).
+    smoothness: the number of continuous derivatives (math.inf for C^infinity). crease_unknowns: how many unknowns a
+    vertex, an edge and a triangle of the domain have, for functions that may be only continuous across the creases of
+    a triangulation that has some; None for functions that keep none.
     """
 
     orbifold: Orbifold
     size: int
     smoothness: float
+    crease_unknowns: ClassVar[tuple[int, int, int] | None] = None
 
     @abstractmethod
     def design_matrix(self, points: Points) -> csr_array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
 
 # So many samples are taken of each part; what a product lacks to a whole number by rounding.
 _PER_PART, _WHOLE = 10, 1e-9
@@ -34,8 +36,12 @@ class Samples:
     length: (n,), the length in space from which on the functions are to be fair, None for the distance between
     neighbouring functions; order: the order of the derivatives that are to be small between the values, 2 where the
     samples are all that is known, 3 where they lie on a smooth surface; noise: the root mean square error of each
-    coordinate of these points, None where it is to be found from them. Raises FitError if the shapes do not fit, for a
-    value that is not finite, and for another number that is negative or not finite.
+    coordinate of these points, None where it is to be found from them.
+
+    normals: (n, 3), the unit normal of what each sample of a surface lies on, nan where it is that of the surface to be
+    found; still: (n,), the samples that do not slide along the surface, as where creases would be crossed; None for
+    none. Raises FitError if the shapes do not fit, for a value that is not finite, and for another number that is
+    negative or not finite.
     """
 
     points: Points
@@ -46,6 +52,8 @@ class Samples:
     length: Floats | None = None
     order: int = 2
     noise: float | None = None
+    normals: Floats | None = None
+    still: Bools | None = None
 
     __repr__ = one_line
 
@@ -62,6 +70,9 @@ class Samples:
             numbers = getattr(self, "weights" if name == "weight" else name)
             if numbers is not None:
                 _require(name, np.isfinite(numbers) & (numbers >= 0), numbers, "finite and not negative")
+        sizes = [np.shape(table) for table in (self.normals, self.still) if table is not None]
+        if any(size not in ((count, 3), (count,)) for size in sizes):
+            raise FitError(f"{count} samples have normals and flags of shapes {sizes}; they must be (n, 3) and (n,)")
 
     @property
     def shares(self) -> Floats:
@@ -71,9 +82,15 @@ class Samples:
     def take(self, chosen: Ints) -> Samples:
         """Some of the samples, in the order of the indices `chosen`."""
         points = Points(self.points.patch[chosen], self.points.x[chosen])
-        area, length = (None if numbers is None else numbers[chosen] for numbers in (self.area, self.length))
         numbers = self.values[chosen], self.weights[chosen], self.stretch[chosen]
-        return Samples(points, *numbers, area, length, self.order, self.noise)
+        area, length = _taken(self.area, chosen), _taken(self.length, chosen)
+        normals, still = _taken(self.normals, chosen), _taken(self.still, chosen)
+        return Samples(points, *numbers, area, length, self.order, self.noise, normals, still)
+
+
+def _taken(table: Any, chosen: Ints) -> Any:
+    """The chosen rows of a table, if there is one."""
+    return None if table is None else table[chosen]
 
 
 def _require(name: str, good: NDArray[np.bool_] | np.bool_, numbers: Floats, what: str) -> None:

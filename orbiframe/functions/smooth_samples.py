@@ -15,12 +15,15 @@ from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
 
 # Fairness acts on lengths up to that of a facet, and of half a girth.
 _OF_GIRTH = 0.5
 # A facet whose arc is higher than this share of the distance of functions stands for something curved.
 _SAGITTA = 0.002
 _FLAT = np.radians(3)
+# A triangle so many times as wide as its neighbour does not belong to the same arc.
+_WIDE = 3.0
 
 
 def vertex_samples(triangulation: Triangulation, refinement: Bisection, noise: float | None = None) -> Samples:
@@ -33,9 +36,9 @@ def vertex_samples(triangulation: Triangulation, refinement: Bisection, noise: f
     area, count = np.linalg.norm(vector_areas(coarse), axis=1), len(refinement.coarse.vertices)
     everywhere = places(triangulation).take(np.arange(len(mesh.vertices)))
     weights, values = np.zeros(len(mesh.vertices)), mesh.vertices.copy()
-    weights[:count], values[:count] = _around(coarse, area / 3)[:count], coarse.vertices[:count]
-    share = _around(mesh, np.linalg.norm(vector_areas(mesh), axis=1) / 3)
-    length = _lengths(triangulation, refinement, _evened(coarse, area))[: len(mesh.vertices)]
+    weights[:count], values[:count] = around_vertices(coarse, area / 3)[:count], coarse.vertices[:count]
+    share = around_vertices(mesh, np.linalg.norm(vector_areas(mesh), axis=1) / 3)
+    length = lengths(triangulation, refinement, _evened(coarse, area))[: len(mesh.vertices)]
     return _fair(Samples(everywhere.points, values, weights, everywhere.stretch, share, length, 3, noise))
 
 
@@ -48,13 +51,13 @@ def semi_smooth_samples(triangulation: Triangulation, refinement: Bisection, spa
     """
     coarse, flat = refinement.facets, refinement.polyhedron
     area = np.linalg.norm(vector_areas(coarse), axis=1)
-    sagitta = _sagittas(coarse, area)
+    sagitta = sagittas(coarse, area)
     everywhere = places(triangulation)
-    share = 1 / (1 + (_at_samples(triangulation, refinement, sagitta) / (_SAGITTA * spacing)) ** 2)
+    share = 1 / (1 + (at_samples(triangulation, refinement, sagitta) / (_SAGITTA * spacing)) ** 2)
     weights, count = everywhere.weights * share, len(refinement.coarse.vertices)
-    weights[:count] = np.maximum(weights[:count], _around(coarse, np.where(sagitta > 0, area / 3, 0))[:count])
-    long = np.maximum(_lengths(triangulation, refinement, area), spacing)
-    length = np.where(_at_samples(triangulation, refinement, (sagitta > 0).astype(float)) > 0.5, long, spacing)
+    weights[:count] = np.maximum(weights[:count], around_vertices(coarse, np.where(sagitta > 0, area / 3, 0))[:count])
+    long = np.maximum(lengths(triangulation, refinement, area), spacing)
+    length = np.where(at_samples(triangulation, refinement, (sagitta > 0).astype(float)) > 0.5, long, spacing)
     values = np.concatenate([flat.vertices, flat.vertices[flat.triangles].mean(axis=1)])
     return _fair(Samples(everywhere.points, values, weights, everywhere.stretch, everywhere.weights, length, 3))
 
@@ -64,37 +67,43 @@ def _fair(samples: Samples) -> Samples:
     return samples.take(np.flatnonzero((samples.weights > 0) | (samples.shares > 0)))
 
 
-def _sagittas(mesh: Polyhedron, area: Floats) -> Floats:
-    """For each triangle the largest of angle times height / 8 over its edges that are bent but not sharp."""
+def sagittas(mesh: Polyhedron, area: Floats, crease: Bools | None = None) -> Floats:
+    """For each triangle the largest of angle times height / 8 over its edges that are bent but not sharp.
+
+    crease: (H,), which edges are sharp, by default those that bend by more than 40 degrees. Where creases are known, a
+    triangle that is much wider than its neighbour is the plane in which a round ends, and no arc.
+    """
     angle = bending(mesh).angle
-    curved = np.where((angle > _FLAT) & (angle < SHARP), angle, 0.0)
+    curved = np.where((angle > _FLAT) & ~(angle >= SHARP if crease is None else crease), angle, 0.0)
     height = 2 * area[mesh.face] / np.maximum(mesh.edge_lengths, np.finfo(float).tiny)
+    if crease is not None:
+        curved[height > _WIDE * height[mesh.twin]] = 0.0
     return np.asarray((curved * height / 8).reshape(-1, 3).max(axis=1))
 
 
 def _evened(mesh: Polyhedron, area: Floats) -> Floats:
     """Areas of triangles like those of the triangles about them: means of means at their corners."""
     degree = np.maximum(np.bincount(mesh.tail, minlength=len(mesh.vertices)), 1)
-    return np.asarray((_around(mesh, area) / degree)[mesh.triangles].mean(axis=1))
+    return np.asarray((around_vertices(mesh, area) / degree)[mesh.triangles].mean(axis=1))
 
 
-def _lengths(triangulation: Triangulation, refinement: Bisection, area: Floats) -> Floats:
+def lengths(triangulation: Triangulation, refinement: Bisection, area: Floats) -> Floats:
     """The length of fairness at all places: the root of twice the area of the facet, or half the girth if less."""
     slope = girth(triangulation).slope
     slopes = np.concatenate([slope, slope[triangulation.polyhedron.triangles].mean(axis=1)])
-    facet = _at_samples(triangulation, refinement, np.sqrt(2 * area))
+    facet = at_samples(triangulation, refinement, np.sqrt(2 * area))
     with np.errstate(divide="ignore"):
         return np.asarray(np.minimum(facet, _OF_GIRTH / slopes))
 
 
-def _at_samples(triangulation: Triangulation, refinement: Bisection, of_facet: Floats) -> Floats:
+def at_samples(triangulation: Triangulation, refinement: Bisection, of_facet: Floats) -> Floats:
     """A quantity of the facets at all places: at a vertex the mean over its fine triangles."""
     mesh = triangulation.polyhedron
     fine = refinement.spread(np.repeat(of_facet, 3).reshape(-1, 3, 1))[:, 0, 0]
     degree = np.maximum(np.bincount(mesh.tail, minlength=len(mesh.vertices)), 1)
-    return np.concatenate([_around(mesh, fine) / degree, fine])
+    return np.concatenate([around_vertices(mesh, fine) / degree, fine])
 
 
-def _around(mesh: Polyhedron, of_face: Floats) -> Floats:
+def around_vertices(mesh: Polyhedron, of_face: Floats) -> Floats:
     """The sum of a quantity of triangles over those about each vertex."""
     return np.asarray(np.bincount(mesh.tail, weights=np.repeat(of_face, 3), minlength=len(mesh.vertices)), dtype=float)

@@ -11,8 +11,10 @@ from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 SHARP = np.radians(40)
+_ROUNDING = 1e-6
 
 
 class Bending(NamedTuple):
@@ -22,6 +24,11 @@ class Bending(NamedTuple):
 
     angle: Floats
     share: float
+
+
+def sharp_edges(mesh: Polyhedron, degrees: float) -> Bools:
+    """The halfedges across which a closed mesh bends by so many degrees or more, (H,)."""
+    return np.asarray(bending(mesh).angle >= np.radians(degrees) - _ROUNDING)
 
 
 def bending(mesh: Polyhedron) -> Bending:

@@ -37,7 +37,8 @@ class Polyhedron:
     vertices: (V, 3); offsets: (F + 1,), face f has the halfedges offsets[f] to offsets[f + 1] - 1; tail, twin, same:
     (H,); twin is -1 where an edge lies in one face only, or in three or more. Optional, as far as a file has them:
     normals (V, 3), colors (V, 3 or 4) and face_colors (F, 3 or 4), colours from 0 to 1; unit, that of the coordinates:
-    "millimetre" or "metre".
+    "millimetre" or "metre"; corner_normals (H, 3), of every corner of every face, where they are not those of the
+    vertices: beside creases.
     """
 
     vertices: Floats
@@ -49,6 +50,7 @@ class Polyhedron:
     colors: Floats | None = None
     face_colors: Floats | None = None
     unit: str | None = None
+    corner_normals: Floats | None = None
 
     @classmethod
     def from_corners(
@@ -172,8 +174,8 @@ class Polyhedron:
         return self.tail[self.offsets[face] : self.offsets[face + 1]]
 
     def with_vertices(self, vertices: Floats, normals: Floats | None = None) -> Polyhedron:
-        """The same faces with other vertices (and normals); colours are kept."""
-        return replace(self, vertices=np.asarray(vertices, dtype=np.float64), normals=normals)
+        """The same faces with other vertices (and normals); colours are kept, normals of corners are not."""
+        return replace(self, vertices=np.asarray(vertices, dtype=np.float64), normals=normals, corner_normals=None)
 
     def to_trimesh(self) -> Any:
         """A trimesh.Trimesh of triangles, with the normals if there are some; vertices keep their numbers."""

@@ -55,6 +55,12 @@ def refine(polyhedron: Polyhedron, density: int) -> Refinement:
     return Refinement(polyhedron, Polyhedron(vertices, offsets, tail, twin, same), density, face, weights)
 
 
+def grid_of(density: int) -> Floats:
+    """The barycentric coordinates of the corners of the triangles that one triangle is cut into, (density^2, 3, 3)."""
+    grid = _grid(density)
+    return np.asarray(grid.barycentric[grid.triangles.reshape(-1, 3)])
+
+
 @dataclass(frozen=True, eq=False)
 class _Grid:
     """The triangle with k + 1 points on each side: point (i, j) has weights (k - i - j, i, j) / k."""

@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from orbiframe.meshes.polyhedron import Polyhedron
 
 
 def disjoint_union(meshes: Sequence[Polyhedron]) -> Polyhedron:
-    """The faces of all meshes one after the other, nothing glued; normals are kept where all meshes have some."""
+    """The faces of all meshes one after the other, nothing glued; normals are kept where all meshes have some.
+
+    If a mesh has normals of corners, the corners of the others get those of their vertices.
+    """
     vertices = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     halfedges = np.cumsum([0, *(len(mesh.tail) for mesh in meshes)])
     normals = [mesh.normals for mesh in meshes if mesh.normals is not None]
@@ -22,4 +26,13 @@ def disjoint_union(meshes: Sequence[Polyhedron]) -> Polyhedron:
         np.concatenate(twins),
         np.concatenate([mesh.same for mesh in meshes]),
         np.concatenate(normals) if len(normals) == len(meshes) else None,
+        corner_normals=_corner_normals(meshes) if len(normals) == len(meshes) else None,
     )
+
+
+def _corner_normals(meshes: Sequence[Polyhedron]) -> NDArray[np.float64] | None:
+    if all(mesh.corner_normals is None for mesh in meshes):
+        return None
+    own = [mesh.normals[mesh.tail] if mesh.normals is not None else np.zeros((len(mesh.tail), 3)) for mesh in meshes]
+    given = [mesh.corner_normals for mesh in meshes]
+    return np.concatenate([a if b is None else b for a, b in zip(own, given, strict=True)])

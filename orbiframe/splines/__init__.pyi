@@ -10,7 +10,9 @@ from .bernstein import (
 )
 from .element_basis import ElementBasis as ElementBasis
 from .galerkin import integrals as integrals, mass as mass, stiffness as stiffness
+from .hairs import HairPoints as HairPoints, hair_points as hair_points
 from .powell_sabin_split import PowellSabinSplit as PowellSabinSplit
+from .sectors import Sectors as Sectors
 from .shared_edges import (
     along_reference as along_reference,
     edge_normals as edge_normals,

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from orbiframe.compiled.decorator import compiled
+from orbiframe.splines.sectors import Sectors
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
@@ -26,18 +27,29 @@ class Unknowns:
 
     In a triangle they stand in this order: those of corners 0, 1, 2, of edges 0, 1, 2 (edge c from corner c to c + 1)
     and of the inside.
+
+    sectors: of a domain with creases, for three unknowns at every vertex: those of its sectors instead, and on the two
+    sides of an open edge unknowns of their own.
     """
 
     domain: GeodesicTriangulation
     at_vertex: int
     on_edge: int
     in_face: int
+    sectors: Sectors | None = None
 
     @property
     def size(self) -> int:
         """How many there are on X/H."""
-        d = self.domain
-        return self.at_vertex * d.vertex_count + self.on_edge * d.edge_count + self.in_face * d.face_count
+        return self._at_vertices + self._on_edges + self.in_face * self.domain.face_count
+
+    @property
+    def _at_vertices(self) -> int:
+        return self.at_vertex * self.domain.vertex_count if self.sectors is None else self.sectors.size
+
+    @property
+    def _on_edges(self) -> int:
+        return self.on_edge * (self.domain.edge_count if self.sectors is None else self.sectors.side_count)
 
     @property
     def local_size(self) -> int:
@@ -61,15 +73,17 @@ class Unknowns:
     @cached_property
     def numbers(self) -> Ints:
         """The number on X/H of every unknown of every triangle, (F, local_size)."""
-        d = self.domain
-        edges = self.at_vertex * d.vertex_count
-        faces = edges + self.on_edge * d.edge_count
+        d, sectors = self.domain, self.sectors
+        edges, faces = self._at_vertices, self._at_vertices + self._on_edges
+        side = d.edge if sectors is None else sectors.side
         parts = (
             (0, self.at_vertex, d.vertex),
-            (edges, self.on_edge, d.edge.reshape(-1, 3)),
+            (edges, self.on_edge, side.reshape(-1, 3)),
             (faces, self.in_face, np.arange(d.face_count)[:, None]),
         )
         columns = [first + count * owner[..., None] + np.arange(count) for first, count, owner in parts]
+        if sectors is not None:
+            columns[0] = sectors.numbers[sectors.corner]
         return np.concatenate([column.reshape(d.face_count, -1) for column in columns], axis=1)
 
     def matrix(self, nets: Floats) -> csr_array:

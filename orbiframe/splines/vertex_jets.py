@@ -18,6 +18,7 @@ from orbiframe.splines.bernstein import coefficient_count, symmetric_power
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,12 +26,14 @@ class VertexJets:
     """Jets of one order at all vertices: Bernstein coefficients of P on a triangle about each vertex.
 
     order: k; triangles: (V, 3, 3), the corners in columns, in the frame of the reference corner of the vertex, on the
-    plane beta(v, q) = 1 (in E^2 q0 = 1), which touches X in S^2 and H^2.
+    plane beta(v, q) = 1 (in E^2 q0 = 1), which touches X in S^2 and H^2; sector: (F, 3), the number of the triangle of
+    every corner, where creases divide the stars of vertices (see `Sectors`), by default its vertex.
     """
 
     domain: GeodesicTriangulation
     order: int
     triangles: Floats
+    sector: Ints | None = None
 
     @property
     def count(self) -> int:
@@ -40,7 +43,7 @@ class VertexJets:
     @cached_property
     def _to_reference(self) -> Floats:
         """From frames of triangles to coordinates in the triangle about the vertex of each corner, (F, 3, 3, 3)."""
-        inverse = np.linalg.inv(self.triangles)[self.domain.vertex]
+        inverse = np.linalg.inv(self.triangles)[self.domain.vertex if self.sector is None else self.sector]
         return np.asarray(inverse @ self.domain.geometry.inverse(self.domain.corner_frame))
 
     def forms(self, corner: int, vectors: Floats, order: int | None = None) -> Floats:

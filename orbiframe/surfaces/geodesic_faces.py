@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.delaunay.crease_domain import crease_triangulation
 from orbiframe.delaunay.site_triangulation import delaunay_of_vertices
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.orbifolds.atlas import Points
@@ -69,8 +70,11 @@ def input_faces(surface: OrbifoldSurface) -> GeodesicFaces:
 
     A triangle of the input with sides that are geodesics of X is not what the map makes of it, and may be turned over
     where the map bends much; then all triangles are those of the Delaunay triangulation with the same vertices, none of
-    which is folded.
+    which is folded. On a surface with creases they are the triangles of the domain of its functions, as creases are
+    edges of that.
     """
+    if surface.triangulation.crease is not None:
+        return GeodesicFaces.of_triangulation(crease_triangulation(surface.triangulation))
     coarse, flat = surface.refinement.coarse, surface.triangulation
     geometry, atlas = surface.orbifold.geometry, surface.orbifold.atlas
     step = surface.refinement.composed(atlas.isometry[flat.transition]).reshape(-1, 3, 3, 3)

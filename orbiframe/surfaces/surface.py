@@ -14,11 +14,13 @@ from orbiframe.errors import FitError
 from orbiframe.functions.basis import Basis, DifferentiableBasis
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.subdivision import grid_of
 from orbiframe.meshes.told_by_ends import refined_by_ends
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.planes.quadrature import triangle_points
 from orbiframe.surfaces.places_in_triangles import require_places
+from orbiframe.triangulations.crease_chains import on_crease
 from orbiframe.triangulations.triangulation import Triangulation
 
 if TYPE_CHECKING:
@@ -31,6 +33,8 @@ Ints = NDArray[np.intp]
 
 _CHUNK = 1 << 16
 _PICTURED = 30_000  # triangles, or about so many
+# The side of a crease on which the corner of a face lies is told so far inside of the face, as a share of it.
+_INSIDE = 1e-6
 
 
 class Jet(NamedTuple):
@@ -106,7 +110,10 @@ class OrbifoldSurface:
         return np.asarray(self.origin + self.scale * self.basis.values(points, self.coefficients))
 
     def jet(self, points: Points) -> Jet:
-        """Surface points with first and second derivatives. Raises FitError for a basis that has none."""
+        """Surface points with first and second derivatives. Raises FitError for a basis that has none.
+
+        On a crease the derivatives are those of one of its sides, the same for the same point.
+        """
         value, first, second = self._unit_jet(points)
         return Jet(self.origin + self.scale * value, self.scale * first, self.scale * second)
 
@@ -184,8 +191,9 @@ class OrbifoldSurface:
 
         bisected: every triangle of the refined mesh instead, so that triangles are even in size and small where the
         input is thin. Watertight and of the topology of the input: every vertex is evaluated once, and the faces are
-        glued as those of the input are. Where a file could not tell the edges by their ends, triangles are halved
-        first, see `refined_by_ends`. Normals point to the side from which the faces run counterclockwise.
+        glued as those of the input are. Creases are edges, and the corners of faces there have normals of their own.
+        Where a file could not tell the edges by their ends, triangles are halved first, see `refined_by_ends`. Normals
+        point to the side from which the faces run counterclockwise.
         """
         return self.tessellation(density, bisected=bisected).mesh
 
@@ -201,7 +209,33 @@ class OrbifoldSurface:
         d = self._derivatives(points, 1)
         normals = _unit(np.cross(d[1], d[2])) * self.triangulation.face_signs[face, None]
         placed = mesh.polyhedron.with_vertices(self.origin + self.scale * d[0], normals)
+        if self.triangulation.crease is not None:
+            placed = replace(placed, corner_normals=self._corner_normals(placed, face, barycentric, density, bisected))
         return Tessellation(self._in_unit(placed), points)
+
+    def _corner_normals(
+        self, mesh: Polyhedron, face: Ints, barycentric: Floats, density: int, bisected: bool
+    ) -> Floats | None:
+        """The normals of the corners of a tessellation, (H, 3): on creases those of the side of the face.
+
+        None for a mesh whose triangles had to be halved to tell them by their ends.
+        """
+        assert mesh.normals is not None
+        if (
+            mesh.face_count
+            != density**2 * (self.triangulation.polyhedron if bisected else self.refinement.coarse).face_count
+        ):
+            return None
+        corner = np.flatnonzero(on_crease(self.triangulation, face, barycentric)[mesh.tail])
+        own = mesh.normals[mesh.tail]
+        part, place = np.divmod(corner // 3, density**2)
+        grid = grid_of(density)[place]
+        inside = (1 - _INSIDE) * grid[np.arange(len(corner)), corner % 3] + _INSIDE * grid.mean(axis=1)
+        if not bisected:
+            part, inside = self.refinement.locate(part, inside)
+        d = self._derivatives(self.triangulation.locate(part, inside), 1)
+        own[corner] = _unit(np.cross(d[1], d[2])) * self.triangulation.face_signs[part, None]
+        return own
 
     @property
     def unit(self) -> str | None:

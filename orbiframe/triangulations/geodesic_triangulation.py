@@ -32,7 +32,8 @@ class GeodesicTriangulation:
     corners: (F, 3, 3), [triangle, corner, coordinate]; twin: (3 F,); same: (3 F,), the twin runs the same way, so that
     the gluing reverses orientation; gluing: (3 F, 3, 3), the isometry from the frame of the triangle of the twin to the
     frame of the triangle of the halfedge; patch: (F,) and placement: (F, 3, 3), the isometry from the frame of each
-    triangle to the frame of a patch of the orbifold.
+    triangle to the frame of a patch of the orbifold. crease: (3 F,), the halfedges of creases, across which functions
+    are only continuous; None for none.
     """
 
     orbifold: Orbifold
@@ -42,6 +43,7 @@ class GeodesicTriangulation:
     gluing: Floats
     patch: Ints
     placement: Floats
+    crease: Bools | None = None
 
     @classmethod
     def of_map(cls, triangulation: Triangulation) -> GeodesicTriangulation:
@@ -87,7 +89,7 @@ class GeodesicTriangulation:
         """The vertex of every corner, (F, 3); vertices are numbered by their first corners."""
         count = 3 * self.face_count
         here = np.arange(count)
-        links = np.concatenate([here, _following(here)]), np.concatenate([self.start, self._end])
+        links = np.concatenate([here, _following(here)]), np.concatenate([self.start, self.end])
         graph = coo_array((np.ones(2 * count), links), shape=(count, count))
         label = connected_components(graph, directed=False)[1]
         first, number = np.unique(label, return_index=True)[1], np.empty(label.max() + 1, dtype=np.intp)
@@ -125,7 +127,7 @@ class GeodesicTriangulation:
         before = 3 * face + (corner + 2) % 3
         # Across the halfedge that starts at the corner, and across the one that ends there.
         across = np.concatenate([level, before])
-        beside = np.concatenate([self.start[level], self._end[before]])
+        beside = np.concatenate([self.start[level], self.end[before]])
         source = np.concatenate([level, level])
         beside, first = np.unique(beside, return_index=True)
         new = ~known[beside]
@@ -135,9 +137,20 @@ class GeodesicTriangulation:
         return np.asarray(beside)
 
     @cached_property
-    def _end(self) -> Ints:
+    def end(self) -> Ints:
         """The corner of the triangle of the twin that is glued to the end of each halfedge, (3 F,)."""
         return np.where(self.same, _following(self.twin), self.twin)
+
+    @property
+    def creased(self) -> Bools:
+        """The halfedges of creases, (3 F,)."""
+        return np.zeros(3 * self.face_count, dtype=np.bool_) if self.crease is None else self.crease
+
+    @cached_property
+    def crease_degree(self) -> Ints:
+        """How many creases meet at every vertex, (V,): 1 where one ends, 2 on its way, more at corners."""
+        first, vertex = np.flatnonzero(self.creased & self.reference), self.vertex.ravel()
+        return np.bincount(vertex[np.concatenate([first, _following(first)])], minlength=self.vertex_count)
 
     @cached_property
     def reference(self) -> Bools:
@@ -180,7 +193,7 @@ class GeodesicTriangulation:
     def gluing_defect(self) -> float:
         """How far the gluings are from taking the ends of twins to each other: the largest error of a coordinate."""
         flat, halfedge = self.corners.reshape(-1, 3), np.arange(3 * self.face_count)
-        ends = ((halfedge, self.start), (_following(halfedge), self._end))
+        ends = ((halfedge, self.start), (_following(halfedge), self.end))
         return max(float(np.abs(flat[a] - self.geometry.act(self.gluing, flat[b])).max()) for a, b in ends)
 
     @property
@@ -205,7 +218,19 @@ class GeodesicTriangulation:
         twin, same = self._refined_twins()
         corners, placement = about_centres(geometry, child.reshape(-1, 3, 3), np.repeat(self.placement, 4, axis=0))
         gluing = edge_gluings(geometry, corners, twin, same)
-        return GeodesicTriangulation(self.orbifold, corners, twin, same, gluing, np.repeat(self.patch, 4), placement)
+        patch = np.repeat(self.patch, 4)
+        return GeodesicTriangulation(
+            self.orbifold, corners, twin, same, gluing, patch, placement, self._refined_creases()
+        )
+
+    def _refined_creases(self) -> Bools | None:
+        """The halves of creases."""
+        if self.crease is None:
+            return None
+        crease, whole = np.zeros((self.face_count, 4, 3), dtype=np.bool_), self.crease.reshape(-1, 3)
+        for c in range(3):
+            crease[:, c, c], crease[:, (c + 1) % 3, c] = whole[:, c], whole[:, c]
+        return crease.ravel()
 
     def _refined_twins(self) -> tuple[Ints, Bools]:
         """Twins and side flags of the children: outer halves inherit."""

@@ -18,6 +18,7 @@ from orbiframe.orbifolds.orbifold import Orbifold
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +30,8 @@ class Triangulation:
     atlas.isometry[transition[h]] points[j] in the frame of the patch of i. group: where the group comes from, and
     weights: which edge weights made the map, both in words for the report. density: (V,), how many functions there
     should be per length at each vertex beyond what the map alone asks for, up to a factor; None: the same everywhere.
+    crease: (H,), the halfedges of creases, across which functions are only continuous; sites: (n,), the vertices that
+    the domain of splines then has, between which creases run along geodesics; None for none.
     """
 
     orbifold: Orbifold
@@ -39,6 +42,8 @@ class Triangulation:
     group: str = "given"
     weights: str = "none"
     density: Floats | None = None
+    crease: Bools | None = None
+    sites: Ints | None = None
 
     __repr__ = one_line
 

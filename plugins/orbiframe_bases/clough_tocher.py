@@ -26,10 +26,12 @@ class CloughTocher(ElementBasis):
     triangulation: the map of a mesh, on which a domain for about `size` functions is made, or a domain itself.
     """
 
+    crease_unknowns = 3, 1, 0
+
     def __init__(
         self, orbifold: Orbifold, triangulation: Triangulation | GeodesicTriangulation, *, size: int = 1000
     ) -> None:
-        domain = domain_for(orbifold, triangulation, size, (3, 1, 0))
+        domain = domain_for(orbifold, triangulation, size, (3, 1, 0), creases=True)
         data = CubicHermite(domain)
 
         def nets(faces: slice) -> Floats:

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.splines import Unknowns, VertexJets, shaped_triangles, shared_normals
+from orbiframe.splines import Sectors, Unknowns, VertexJets, shaped_triangles, shared_normals
 from orbiframe.triangulations import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
@@ -22,11 +22,15 @@ class CubicHermite:
 
     def __init__(self, domain: GeodesicTriangulation) -> None:
         self.domain = domain
-        self.unknowns = Unknowns(domain, 3, 1, 0)
+        self._sectors = Sectors(domain) if domain.crease is not None else None
+        self.unknowns = Unknowns(domain, 3, 1, 0, self._sectors)
 
     @cached_property
     def _jets(self) -> VertexJets:
-        return VertexJets(self.domain, 1, shaped_triangles(self.domain, neighbours(self.domain), 0.8))
+        triangles, sectors = shaped_triangles(self.domain, neighbours(self.domain), 0.8), self._sectors
+        if sectors is None:
+            return VertexJets(self.domain, 1, triangles)
+        return VertexJets(self.domain, 1, sectors.triangles(triangles), sectors.corner)
 
     @cached_property
     def _normals(self) -> Floats:
@@ -51,7 +55,8 @@ class CubicHermite:
     @cached_property
     def one(self) -> Floats:
         """The data of the function 1: B(v, v, u) = beta(v, u), 1 on the tangent plane, and no slope across edges."""
-        return np.repeat([1.0, 0.0], [3 * self.domain.vertex_count, self.domain.edge_count])
+        edges = self.domain.edge_count if self._sectors is None else self._sectors.side_count
+        return np.repeat([1.0, 0.0], [self.unknowns.size - edges, edges])
 
     @cached_property
     def pattern(self) -> NDArray[np.bool_]:

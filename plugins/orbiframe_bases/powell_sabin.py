@@ -13,6 +13,7 @@ from orbiframe.delaunay import domain_for
 from orbiframe.splines import (
     ElementBasis,
     PowellSabinSplit,
+    Sectors,
     Unknowns,
     VertexJets,
     coefficient_count,
@@ -50,11 +51,14 @@ class PowellSabin(ElementBasis):
         self, orbifold: Orbifold, triangulation: Triangulation | GeodesicTriangulation, *, size: int = 1000
     ) -> None:
         at_vertex = coefficient_count(self.jet_order)
-        domain = domain_for(orbifold, triangulation, size, (at_vertex, self.on_edge, self.in_face))
+        counts = at_vertex, self.on_edge, self.in_face
+        domain = domain_for(orbifold, triangulation, size, counts, creases=self.crease_unknowns is not None)
         split = PowellSabinSplit(domain)
         self.vertex_triangles = self._triangles(split)
-        jets = VertexJets(domain, self.jet_order, self.vertex_triangles)
-        unknowns = Unknowns(domain, at_vertex, self.on_edge, self.in_face)
+        sectors = Sectors(domain) if domain.crease is not None else None
+        triangles = self.vertex_triangles if sectors is None else sectors.triangles(self.vertex_triangles)
+        jets = VertexJets(domain, self.jet_order, triangles, None if sectors is None else sectors.corner)
+        unknowns = Unknowns(domain, *counts, sectors)
         matrix = _matrix(self.polynomial_degree, split, jets, unknowns)
         super().__init__(domain, self.polynomial_degree, split.micro_triangles, matrix, self.continuity)
 
@@ -104,6 +108,7 @@ class PowellSabin2(PowellSabin):
     """
 
     polynomial_degree, jet_order, continuity = 2, 1, 1
+    crease_unknowns = 3, 0, 0
 
     def _triangles(self, split: PowellSabinSplit) -> Floats:
         return enclosing_triangles(split.domain, split.around)

@@ -105,6 +105,8 @@ def _shape(surface: OrbifoldSurface, exact: bool, faces: int, tolerance: float) 
     if exact:
         patches = patches_of(surface)
         return shape_of(patches), {}, isinstance(patches, PeriodicPatch)
+    if surface.triangulation.crease is not None:
+        raise FitError("a few faces would round the creases of the surface off; write its exact patches (exact=True)")
     few = fitted(surface, faces or None, tolerance)
     shape = spline_shape(few, surface)
     found = described(few, surface, tolerance) | {"valid": bool(BRepCheck_Analyzer(shape).IsValid())}

@@ -14,11 +14,16 @@ _DENSE = 1e8  # numbers of which a dense matrix may have at most so many
 
 
 class Gram:
-    """The matrices A^T W_k A for sparse rows A and k weights of each row, dense up to a size, beyond it sparse."""
+    """The matrices A^T W_k A for sparse rows A and k weights of each row, dense up to a size, beyond it sparse.
 
-    def __init__(self, size: int, kinds: int = 1) -> None:
+    most: up to how many numbers they are dense.
+    """
+
+    def __init__(self, size: int, kinds: int = 1, most: float | None = None) -> None:
         self.size = size
-        self._dense = np.zeros((size, size, kinds)) if size * size * kinds <= _DENSE else None
+        self._dense = (
+            np.zeros((size, size, kinds)) if size * size * kinds <= (_DENSE if most is None else most) else None
+        )
         self._sparse = [csr_array((size, size)) for _ in range(0 if self._dense is not None else kinds)]
 
     def add(self, rows: csr_array, weights: Floats) -> None:

@@ -14,6 +14,7 @@ from orbiframe import Basis, DifferentiableBasis, Fitter, Points, Samples
 from orbiframe.functions import foot_step, moved
 from orbiframe_fitters.energy import FAIRING, Energy, energy_of, spacing
 from orbiframe_fitters.gram import Gram
+from orbiframe_fitters.kinks import Kinks
 from orbiframe_fitters.least_squares import chunks, linear_fit, require_not_negative
 from orbiframe_fitters.normal_equations import nearly_solved, solved
 
@@ -27,6 +28,8 @@ _LONGEST_STEP = 0.3
 _MOST_STRETCH = 30.0
 # A step that leaves more than this share of the distance is the last one.
 _GAIN = 0.97
+# With creases at least so many, for planes become flat while curved sides have long settled.
+_LEAST_STEPS = 4
 # A smooth surface is shrunk to at least so much in one step at every datum: beyond, a limb is being pinched off.
 _LEAST_SHARE = 0.35
 # Up to so many functions the equations of a step are factored as a whole; of more, iteration takes less time.
@@ -46,6 +49,12 @@ _SCHEDULES = {
     2: (Schedule(1e-4, 1e-2, 1e-3), Schedule(1e-4, 5e-3, 1e-3)),
     3: (Schedule(1e-4, 1e-3, 0.0), Schedule(1e-6, 1e-4, 0.0)),
 }
+# Between creases flat facets are flat in any parametrization, so that very little fairness is enough; beside curved
+# ones more damping and some pull keep parameters from gliding away.
+_FLAT = (Schedule(1e-5, 1e-3, 0.0), Schedule(1e-6, 1e-3, 0.0))
+_CURVED = (Schedule(1e-5, 1e-2, 1e-4), Schedule(1e-6, 1e-2, 1e-4))
+# How much a kink across a hair counts against a distance of what it would lift at the spacing of the functions.
+_KINK = 10.0
 
 
 class Sliding(Fitter):
@@ -79,9 +88,12 @@ class Sliding(Fitter):
     def _schedules(self, basis: Basis, samples: Samples, fairing: float) -> tuple[Schedule, ...]:
         """Those of the order of the energy, or the fairing that is given or that noise asks for."""
         order = min(samples.order, 2 if basis.smoothness < 2 else 3)
+        schedules = _SCHEDULES[order]
+        if samples.still is not None:
+            schedules = _FLAT if samples.still.all() else _CURVED
         if self.fairing is None and fairing <= FAIRING[order]:
-            return _SCHEDULES[order]
-        return tuple(schedule._replace(fairing=fairing) for schedule in _SCHEDULES[order])
+            return schedules
+        return tuple(schedule._replace(fairing=fairing) for schedule in schedules)
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +146,9 @@ class _Slide:
             part.take(np.flatnonzero(part.weights > 0)) for part, _ in chunks(samples) if (part.weights > 0).any()
         ]
         self.fairness = self._fairness(self.energy) if self.energy else []
-        length = np.full(len(samples.weights), spacing(basis, samples)) if samples.length is None else samples.length
+        self.kinks, self.creased = Kinks.of(basis), samples.still is not None
+        self.spacing = spacing(basis, samples)
+        length = np.full(len(samples.weights), self.spacing) if samples.length is None else samples.length
         self.longest = [
             _LONGEST_STEP * length[chosen[part.weights > 0]]
             for part, chosen in chunks(samples)
@@ -166,7 +180,7 @@ class _Slide:
             else:
                 return coefficients
             coefficients, feet = trial, there
-            if distance > _GAIN * before and step >= len(self.schedules) - 1:
+            if distance > _GAIN * before and step >= (_LEAST_STEPS if self.creased else len(self.schedules)) - 1:
                 break
         return coefficients
 
@@ -179,7 +193,7 @@ class _Slide:
         return [found.under(coefficients, part.values) for found, part in zip(feet, self.data, strict=True)]
 
     def _distance(self, feet: list[_Feet]) -> float:
-        total = sum(float(part.weights @ found.distance**2) for found, part in zip(feet, self.data, strict=True))
+        total = sum(float(part.weights @ _away(found, part) ** 2) for found, part in zip(feet, self.data, strict=True))
         return float(np.sqrt(total / sum(part.weights.sum() for part in self.data)))
 
     def _slid(self, feet: list[_Feet], coefficients: Floats) -> list[_Feet]:
@@ -187,6 +201,18 @@ class _Slide:
         return [self._slid_part(*each, coefficients) for each in zip(feet, self.data, self.longest, strict=True)]
 
     def _slid_part(self, feet: _Feet, part: Samples, longest: Floats, coefficients: Floats) -> _Feet:
+        if part.still is not None:
+            return self._slid_some(feet, part, longest, coefficients, np.flatnonzero(~part.still))
+        return self._slid_all(feet, part, longest, coefficients)
+
+    def _slid_some(self, feet: _Feet, part: Samples, longest: Floats, coefficients: Floats, chosen: Ints) -> _Feet:
+        """Only some of the data slide."""
+        if not len(chosen):
+            return feet
+        found = self._slid_all(feet.take(chosen), part.take(chosen), longest[chosen], coefficients)
+        return feet.replaced(chosen, found)
+
+    def _slid_all(self, feet: _Feet, part: Samples, longest: Floats, coefficients: Floats) -> _Feet:
         step = foot_step(feet.jets, part.values, longest)
         found = self._feet(moved(self.basis.orbifold, feet.points, step), part.values, coefficients)
         for share in (1.0, 0.25):
@@ -202,20 +228,37 @@ class _Slide:
 
     def _change(self, feet: list[_Feet], coefficients: Floats, schedule: Schedule) -> Floats:
         """The change of the coefficients by one step of Gauss and Newton."""
-        gram, right = Gram(self.basis.size, 6), np.zeros((self.basis.size, 3))
+        gram, right = Gram(self.basis.size, 6, self._room), np.zeros((self.basis.size, 3))
         for found, part in zip(feet, self.data, strict=True):
-            weights, wanted = _linearised(found, part.weights, schedule)
+            weights, wanted = _linearised(found, part, schedule)
             gram.add(found.matrices[0], weights)
             right += found.matrices[0].T @ wanted
+        if self.kinks is not None:
+            weights, wanted = self._smoothed(self.kinks, coefficients)
+            gram.add(self.kinks.jump, weights)
+            right += self.kinks.jump.T @ wanted
         blocks: list[Any] = list(gram.matrices())
         if self.energy is not None and schedule.fairing:
             stiff: Any = schedule.fairing * self._stiffness(coefficients, self.energy)
             right -= stiff @ coefficients
             blocks = [block + stiff if kind in (0, 3, 5) else block for kind, block in enumerate(blocks)]
         rows = [[blocks[kind] for kind in line] for line in _KIND]
-        if self.basis.size > _DIRECT:
+        if self.basis.size > _DIRECT and not self.creased:
             return nearly_solved(rows, right)
         return solved(_joined(rows), right.T.reshape(-1, 1)).reshape(3, -1).T
+
+    @property
+    def _room(self) -> float | None:
+        """Up to how many numbers matrices are dense: with creases the equations are solved as a whole, and sparse."""
+        return 0.0 if self.creased else None
+
+    def _smoothed(self, kinks: Kinks, coefficients: Floats) -> tuple[Floats, Floats]:
+        """For each point of a hair the six entries of the form of its kink, (n, 6), and its right side, (n, 3)."""
+        normal, kink = kinks.seen(coefficients)
+        size = np.linalg.norm(kinks.across @ coefficients, axis=1)
+        weight = _KINK * self.spacing**4 / np.maximum(size, np.finfo(float).tiny)
+        form = np.stack([normal[:, a] * normal[:, b] for a, b in _PAIRS], axis=1)
+        return (weight / size)[:, None] * form, -(weight * kink)[:, None] * normal
 
     def _pinched(self, before: Floats, after: Floats) -> bool:
         """Whether a smooth surface shrinks too much somewhere; facets may, where an edge becomes sharp."""
@@ -226,7 +269,7 @@ class _Slide:
 
     def _stiffness(self, coefficients: Floats, energy: Energy) -> Floats | csr_array:
         """The energy in the metric of the surface as it is."""
-        gram = Gram(self.basis.size)
+        gram = Gram(self.basis.size, most=self._room)
         for part in self.fairness:
             chosen, rows, _ = part
             stretch = np.minimum(1 / _elements(part, coefficients), _MOST_STRETCH * self.samples.stretch[chosen])
@@ -241,11 +284,29 @@ def _elements(part: _Fairness, coefficients: Floats) -> Floats:
     return np.asarray(np.maximum(np.linalg.norm(np.cross(first, second), axis=1), np.finfo(float).tiny))
 
 
-def _linearised(feet: _Feet, weights: Floats, schedule: Schedule) -> tuple[Floats, Floats]:
-    """For each datum the six entries of its quadratic form, (n, 6), and its right side, (n, 3)."""
+def _away(feet: _Feet, part: Samples) -> Floats:
+    """The distances of data from the surface, of those that keep their parameters from its tangent planes."""
+    if part.still is None:
+        return feet.distance
+    height = np.abs(np.einsum("ni,ni->n", feet.gap, _known_normals(feet, part)[0]))
+    return np.where(part.still, height, feet.distance)
+
+
+def _known_normals(feet: _Feet, part: Samples) -> tuple[Floats, Floats]:
+    """The unit normals (n, 3) of what the data lie on, where it is known, else of the surface; and its curvatures."""
     normal, curvature = _normals(feet.jets)
+    if part.normals is None:
+        return normal, curvature
+    unknown = np.isnan(part.normals)
+    return np.where(unknown, normal, part.normals), curvature
+
+
+def _linearised(feet: _Feet, part: Samples, schedule: Schedule) -> tuple[Floats, Floats]:
+    """For each datum the six entries of its quadratic form, (n, 6), and its right side, (n, 3)."""
+    weights, (normal, curvature) = part.weights, _known_normals(feet, part)
     away = np.linalg.norm(feet.gap, axis=1) * curvature
     pull = np.maximum(schedule.pull, away / (1 + away))
+    pull = pull if part.still is None else np.where(part.still, schedule.pull, pull)
     along = pull + schedule.damping
     form = np.stack([normal[:, a] * normal[:, b] for a, b in _PAIRS], axis=1) * np.maximum(1 - along, 0)[:, None]
     form[:, [0, 3, 5]] += along[:, None]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from orbiframe.functions.smooth_samples import _sagittas
+from orbiframe.functions.smooth_samples import sagittas
 from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
@@ -25,7 +25,7 @@ def test_the_sagitta_of_walls_is_that_of_the_arc(sides: int, curved: bool) -> No
     """Bends of 15 and 30 degrees mean an arc; one of 45 is an edge, and one of 2.4 counts as flat."""
     mesh = triangulated(prism(sides, 2.0, 0.3))
     area = np.linalg.norm(vector_areas(mesh), axis=1)
-    found = _sagittas(mesh, area)
+    found = sagittas(mesh, area)
     walls = np.ptp(mesh.vertices[mesh.triangles][..., 2], axis=1) > 0
     expected = 2.0 * (1 - np.cos(np.pi / sides)) if curved else 0.0
     np.testing.assert_allclose(found[walls], expected, rtol=0.03)

@@ -130,9 +130,9 @@ def test_the_pull_along_the_surface_is_that_of_the_squared_distance() -> None:
     jets = np.zeros((6, 1, 3))
     jets[0], jets[1], jets[2], jets[3] = [2, 0, 0], [0, 2, 0], [0, 0, 1], [-2, 0, 0]
     gap = np.array([[0.5, 0.0, 0.0]])
-    form, wanted = _linearised(
-        _Feet(Points(np.zeros(1, int), np.eye(3)[:1]), [], jets, gap), np.ones(1), Schedule(0, 0, 0)
-    )
+    points = Points(np.zeros(1, int), np.eye(3)[:1])
+    datum = Samples(points, jets[0] + gap, np.ones(1), np.ones(1))
+    form, wanted = _linearised(_Feet(points, [], jets, gap), datum, Schedule(0, 0, 0))
     np.testing.assert_allclose(form, [[1, 0, 0, 0.5 / 2.5, 0, 0.5 / 2.5]], atol=1e-12)
     np.testing.assert_allclose(wanted, [[0.5, 0, 0]], atol=1e-12)
 
