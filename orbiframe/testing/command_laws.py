@@ -13,6 +13,8 @@ from orbiframe.testing.lab import Lab
 
 Component = Callable[[argparse.ArgumentParser], Any]
 
+# The options that every command has.
+_COMMON = ("--help", "--debug", "--progress")
 # What orbiframe itself writes into the arguments of every command.
 RESERVED = ("command", "debug", "progress")
 
@@ -41,7 +43,8 @@ def help_says_all(component: Component, _: Lab) -> None:
 def names_are_free(component: Component, _: Lab) -> None:
     """The arguments get on with --debug and with what orbiframe adds to them."""
     for parser in _parsers(_configured(component)):
-        for action in parser._actions[2:]:
+        own = [action for action in parser._actions if not set(action.option_strings) & set(_COMMON)]
+        for action in own:
             assert action.dest not in (*RESERVED, "run"), f"'{action.dest}' is a name of orbiframe's own: take another"
 
 
@@ -69,6 +72,7 @@ def _configured(component: Component) -> argparse.ArgumentParser:
     """A parser as orbiframe makes it, with the arguments of the command."""
     parser = argparse.ArgumentParser("orbiframe command")
     parser.add_argument("--debug", action="store_true", default=argparse.SUPPRESS, help="show the traceback")
+    parser.add_argument("--progress", default=argparse.SUPPRESS, help="how to tell what goes on")
     component(parser)
     return parser
 

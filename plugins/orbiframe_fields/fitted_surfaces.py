@@ -42,9 +42,7 @@ def fitted_surfaces(
     found = []
     for vertices, part in _parts(mesh):
         size = int(np.clip(max(len(vertices), least), _LEAST, _MOST))
-        settings = Config.load(config, [_BASIS, f"basis.size={size}", *options])
-        for path in settings.plugins:
-            registry.add_file(path)
+        settings = Config.load(config, [_BASIS, f"basis.size={size}", *options], registry)
         result = fit(part, settings, registry, _tell)
         found.append(FittedSurface(result.surface, part, vertices, result.report["data"]["means"]))
     return found
