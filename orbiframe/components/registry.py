@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import importlib
-import os
 import time
 from collections.abc import Callable, Iterable
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import EntryPoint
 from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeGuard, cast
@@ -14,6 +13,7 @@ from typing import Any, TypeGuard, cast
 import pluggy
 
 from orbiframe import plugin as hooks
+from orbiframe.components.chosen_entries import GROUP, chosen_entries
 from orbiframe.components.geometry_names import geometry_name
 from orbiframe.components.hooks import call_each, described, require_known_hooks
 from orbiframe.components.plugin_file import imported_file
@@ -23,8 +23,6 @@ from orbiframe.components.suggestion import did_you_mean
 from orbiframe.errors import PluginError, UsageError
 from orbiframe.plugin import KINDS, Component
 
-GROUP = "orbiframe"
-RESTRICTION = "ORBIFRAME_PLUGINS"
 OWN = "orbiframe"
 # Seconds after which the declarations of a plugin are called slow.
 SLOW = 0.5
@@ -67,7 +65,7 @@ class Registry:
         for a name in `only` that is not installed, PluginError for a file that cannot be loaded.
         """
         registry = cls()
-        for entry in _chosen(sorted(entry_points(group=GROUP)), only):
+        for entry in chosen_entries(only):
             registry._admit(entry)
         for path in files:
             registry.add_file(Path(path))
@@ -264,22 +262,3 @@ def _is_foreign(missing: str | None, module: str) -> TypeGuard[str]:
 
 def _root(module: str) -> str:
     return module.partition(".")[0]
-
-
-def _chosen(entries: list[EntryPoint], only: Iterable[str] | None) -> list[EntryPoint]:
-    wanted = _restriction() if only is None else list(only)
-    if wanted is None:
-        return entries
-    names = sorted({entry.name for entry in entries})
-    for name in wanted:
-        if name not in names:
-            raise UsageError(
-                f"no plugin named '{name}' (asked for by {RESTRICTION} or `only`); "
-                f"installed: {', '.join(names) or 'none'}.{did_you_mean(name, names)}"
-            )
-    return [entry for entry in entries if entry.name in wanted]
-
-
-def _restriction() -> list[str] | None:
-    text = os.environ.get(RESTRICTION)
-    return None if text is None else [name.strip() for name in text.split(",") if name.strip()]
