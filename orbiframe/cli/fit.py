@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import time
 import warnings
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -56,6 +56,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--refine", metavar="K", type=int, help="K*K output triangles for each input triangle (output.refine)")
     add("--faces", metavar="N", type=int, help="to CAD: about so many B-spline faces; default as the topology suggests")
     add("--export-tolerance", metavar="T", type=float, help="of these faces, of the box's diagonal; default 1e-4")
+    add("--conforming", action="store_true", help="to G+Smo (.xml): neighbouring patches have the same knots")
+    add("--unit", choices=("mm", "cm", "m", "in"), help="to CAD: the unit of the file's lengths; default mm")
     add("--exact", action="store_true", help="to CAD: the exact patches of --basis ps2, ps6 and others")
     add("--order", metavar="Q", type=int, help="write curved triangles of order 1 to 6, for finite elements")
     add("--format", metavar="NAME", help="with --order: the format, such as gmsh-2.2, instead of that of the suffix")
@@ -96,8 +98,8 @@ def fitted(args: argparse.Namespace, registry: Registry, progress: Progress) -> 
     if kind == "elements":
         written = _write_elements(args, found, config.output.refine or 1, registry, progress)
     elif kind == "exporter":
-        few = _few_faces(args, config, registry)
-        written = _export(args.output, _only(found, args.output), few, registry, progress)
+        options = _export_options(args, config, registry) or {}
+        written = _export(args.output, _only(found, args.output), options, registry, progress)
     else:
         gate.write(args.output, found.output, registry)
     if args.save:
@@ -153,16 +155,16 @@ def _size(path: Path) -> str:
     return f"{path.stat().st_size / 1e6:.2g} MB"
 
 
-def _export(path: Path, result: Result, few: dict[str, object] | None, registry: Registry, progress: Progress) -> str:
+def _export(path: Path, result: Result, options: dict[str, object], registry: Registry, progress: Progress) -> str:
     """Write the surface itself, or a few faces near it, and say what was written; it takes seconds."""
     from orbiframe.files import gate
 
     progress("export", None)
     start = time.perf_counter()
-    found = gate.export(path, result.surface, registry, options=few)
+    found = gate.export(path, result.surface, registry, options=options)
     result.report["seconds"]["export"] = round(time.perf_counter() - start, 4)
     progress("export", result.report["seconds"]["export"])
-    if few is None:
+    if "faces" not in options:
         return f"exact rational patches, {_size(path)}"
     result.report["export"] = found
     for note in _shortcomings(found):
@@ -182,7 +184,7 @@ def _shortcomings(found: dict[str, Any]) -> Iterator[str]:
             f"the faces of the file are {found['error']:.1e} of the diagonal from the surface, and neighbours meet at "
             f"{found['angle']:.2f}° near ({place}), where the surface may be pinched; try more --faces"
         )
-    if not found["valid"]:
+    if not found.get("valid", True):
         yield (
             "Open CASCADE does not find the shape of the file valid, as where a surface is pinched or passes through "
             "itself on an edge; try another number of --faces"
@@ -214,38 +216,59 @@ def overrides(args: argparse.Namespace) -> list[str]:
     return [*fast, *args.set, *(f"{key}={value}" for key, value in named.items() if value is not None)]
 
 
-def _few_faces(args: argparse.Namespace, config: Config, registry: Registry) -> dict[str, object] | None:
-    """The options of an exporter for a few faces; None for exact patches, or where no exporter makes faces.
-
-    Functions that have exact patches give these unless faces are asked for.
-    """
-    from orbiframe.files.gate import exports
-
-    asked = args.faces is not None or args.export_tolerance is not None
-    makes = _makes_faces(args.output, registry)
-    if asked and (args.exact or not makes):
-        raise UsageError(f"{args.output}: --faces and --export-tolerance are for CAD, as part.step, without --exact")
-    if args.exact and not exports(args.output, registry):
-        raise UsageError(f"{args.output}: --exact is for files that hold exact surfaces, such as part.step")
-    if not makes or args.exact or (_piecewise(config, registry) and not asked):
+def _export_options(args: argparse.Namespace, config: Config, registry: Registry) -> dict[str, object] | None:
+    """The options of the exporter that writes the surface itself, or faces near it; None where a mesh is written."""
+    known = _exporter_options(args.output, registry)
+    _require_known(args, known)
+    if known is None:
         return None
+    options: dict[str, object] = {"unit": args.unit or "mm", "name": args.mesh.stem}
+    if "faces" in known and not args.exact:
+        options |= {"exact": False, "conforming": args.conforming, **_faces(args)}
+    elif not _piecewise(config, registry):
+        return None
+    return {name: value for name, value in options.items() if name in known}
+
+
+def _require_known(args: argparse.Namespace, known: Collection[str] | None) -> None:
+    """Raise UsageError for what the exporter of the output's suffix, with options of these names, does not do."""
+    found = known or ()
+    asked = args.faces is not None or args.export_tolerance is not None
+    for wrong, sentence in (
+        (
+            asked and (args.exact or "faces" not in found),
+            "--faces and --export-tolerance are for CAD, as part.step, without --exact",
+        ),
+        (
+            args.exact and (known is None or ("faces" in found and "exact" not in found)),
+            "--exact is for files that hold exact surfaces, such as part.step",
+        ),
+        (args.conforming and "conforming" not in found, "--conforming is for patches of G+Smo, as patches.xml"),
+        (args.unit is not None and "unit" not in found, "--unit is for CAD, as part.step"),
+    ):
+        if wrong:
+            raise UsageError(f"{args.output}: {sentence}")
+
+
+def _faces(args: argparse.Namespace) -> dict[str, object]:
+    """How many faces are asked for, and how near."""
     if args.faces is not None and not 1 <= args.faces <= _MOST_FACES:
         raise UsageError(f"--faces {args.faces}: give 1 to {_MOST_FACES}")
     tolerance = 1e-4 if args.export_tolerance is None else args.export_tolerance
     if not _LEAST_TOLERANCE <= tolerance < 1:
         raise UsageError(f"--export-tolerance {tolerance:g}: give {_LEAST_TOLERANCE:g} to 1, of the box's diagonal")
-    return {"exact": False, "faces": args.faces or 0, "tolerance": tolerance}
+    return {"faces": args.faces or 0, "tolerance": tolerance}
 
 
-def _makes_faces(path: Path, registry: Registry) -> bool:
-    """Whether the exporter of a suffix, if there is one, has an option for the number of faces."""
+def _exporter_options(path: Path, registry: Registry) -> set[str] | None:
+    """The names of the options of the exporter of a suffix; None if there is none."""
     from orbiframe.components.options import options_of
     from orbiframe.files.gate import component_name, exports
 
     if not exports(path, registry):
-        return False
+        return None
     exporter = registry.load("exporter", component_name(path, registry, "exporter", None))
-    return any(option.name == "faces" for option in options_of(exporter))
+    return {option.name for option in options_of(exporter)}
 
 
 def _piecewise(config: Config, registry: Registry) -> bool:
@@ -256,13 +279,6 @@ def _piecewise(config: Config, registry: Registry) -> bool:
     return isinstance(basis, type) and issubclass(basis, PiecewiseBasis)
 
 
-def _exact(args: argparse.Namespace, config: Config, registry: Registry) -> bool:
-    """Whether the surface itself is written and not a mesh on it: where the format and the functions allow it."""
-    from orbiframe.files.gate import exports
-
-    return exports(args.output, registry) and _piecewise(config, registry)
-
-
 def _kind(args: argparse.Namespace, config: Config, registry: Registry) -> str:
     """The kind of component that writes the output. Raises UsageError for orders that are not made."""
     from orbiframe.surfaces.curved_triangles import LARGEST_ORDER
@@ -270,10 +286,10 @@ def _kind(args: argparse.Namespace, config: Config, registry: Registry) -> str:
     if args.order is None:
         if args.format is not None:
             raise UsageError(f"--format {args.format} chooses how elements are written; add --order, such as --order 2")
-        few = _few_faces(args, config, registry) is not None
-        return "exporter" if few or _exact(args, config, registry) else "writer"
+        return "writer" if _export_options(args, config, registry) is None else "exporter"
     if not 1 <= args.order <= LARGEST_ORDER:
         raise UsageError(f"--order {args.order}: elements have an order of 1 to {LARGEST_ORDER}")
+    _require_known(args, None)
     return "elements"
 
 

@@ -85,6 +85,7 @@ def _quiet(arguments: Sequence[str]) -> bool:
 
 def _done(args: argparse.Namespace, registry: Registry) -> int:
     """Run the command, with its progress told; its exit status."""
+    args.progress.watch(args.command)
     try:
         with compilation_told(quiet=args.progress.mode == "none", json=args.progress.mode == "json"):
             return _status(args.run(args, registry), args, registry)
@@ -112,7 +113,7 @@ def parsed(arguments: list[str], registry: Registry) -> argparse.Namespace:
         registry.component("command", chosen)
     parser.set_defaults(run=lambda *_: _print_help(parser))
     args = parser.parse_args(arguments)
-    args.command = chosen
+    args.command = chosen or ""
     args.progress = Progress(quiet=getattr(args, "quiet", False), mode=args.progress)
     return args
 

@@ -50,6 +50,7 @@ class Progress:
         self._line = status_line(stream) if self.mode == "auto" else None
         self._stage, self._began, self._share = "", 0.0, FitShare()
         self._work: tuple[int, int, str] | None = None
+        self._command = ""
         self._work_began, self._done_before = 0.0, 0
         self._ticker: Ticker | None = None
 
@@ -67,6 +68,7 @@ class Progress:
             self._share.begins(stage)
             self._tick_from_now()
         else:
+            self._stage = ""
             self._share.ends(stage)
         if self._line is None:
             ended = {"seconds": round(seconds, 4)} if seconds is not None else {}
@@ -75,6 +77,12 @@ class Progress:
             self._line.show(f"{stage} …")
         else:
             self._line.leave(f"{stage:<16}{seconds:7.2f} s")
+
+    def watch(self, command: str) -> None:
+        """From now on to `close` a program learns that a command goes on, whether it tells its stages or not."""
+        if self.mode == "json":
+            self._command, self._began = command, time.monotonic()
+            self._tick_from_now()
 
     def work(self, done: int, total: int, text: str = "") -> None:
         """Say that so many of so many fits are done; text: what is being done."""
@@ -100,7 +108,7 @@ class Progress:
             self._ticker = None
         if self._line and self._work:
             self._line.show("")
-        self._work, self._stage = None, ""
+        self._work, self._stage, self._command = None, "", ""
 
     def _say_work(self) -> None:
         if self._work is None:
@@ -125,14 +133,17 @@ class Progress:
         """Say that a stage goes on."""
         if self._work is not None:
             self._say_work()
-        elif self._stage and self._line is None:
+        elif (self._stage or self._command) and self._line is None:
             spent = round(time.monotonic() - self._began, 1)
-            self._json("alive", stage=self._stage, seconds=spent, **self._estimate())
+            self._json("alive", stage=self._stage or self._command, seconds=spent, **self._estimate())
         elif self._stage and self._line:
             percent = 100 * self._share.share
             parts = [f"{time.monotonic() - self._began:.0f} s", f"{percent:.0f} % of the fit done"]
             words = ", ".join(filter(None, [*parts, in_words(self._share.left)]))
             self._line.show(f"{self._stage} … {words}")
+        elif self._ticker and not self._stage:
+            self._ticker.stop()
+            self._ticker = None
 
     def _estimate(self) -> dict[str, Any]:
         return {"share": round(self._share.share, 4), "left": _rounded(self._share.left)}

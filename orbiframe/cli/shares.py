@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 
 # What the stages of a fit take, relative to one another, on an ordinary mesh with the default configuration.
@@ -19,8 +20,9 @@ _WEIGHTS = {
     "tessellation": 5,
     "inspection": 12,
 }
-_OPTIONAL = ("shape",)
+_OPTIONAL, _LAST = ("shape",), ("tessellation", "inspection")
 _ALL = sum(weight for stage, weight in _WEIGHTS.items() if stage not in _OPTIONAL)
+_END = sum(_WEIGHTS[stage] for stage in _LAST)
 # Before that much is done nobody knows how long the rest takes.
 _KNOWN_SHARE, _KNOWN_SECONDS = 0.02, 1.0
 # Seconds for a unit of weight, at least.
@@ -32,19 +34,22 @@ class FitShare:
 
     def __init__(self) -> None:
         self._begun, self._stage, self._stage_begun = 0.0, "", 0.0
-        self._done, self._share, self._part = 0.0, 0.0, ""
+        self._done, self._ended, self._share, self._part = 0.0, 0.0, 0.0, ""
 
     def begins(self, stage: str) -> None:
         """Hear that a stage begins."""
         now = time.monotonic()
         self._begun, self._stage, self._stage_begun = self._begun or now, stage, now
+        if stage.startswith(_LAST) and not self._ended:
+            self._ended = float(_ALL - _END)
 
     def ends(self, stage: str) -> None:
         """Hear that a stage has ended."""
         name, _, part = stage.partition(" ")
         if part != self._part:
-            self._part, self._done = part, 0.0
+            self._part, self._done, self._ended = part, 0.0, 0.0
         self._done += _WEIGHTS.get(name, 0)
+        self._ended += _WEIGHTS.get(name, 0) if self._ended else 0
         self._stage = ""
 
     @property
@@ -57,15 +62,20 @@ class FitShare:
         number, _, count = self._part.partition("/")
         parts = int(count) if number.isdecimal() and count.isdecimal() else 1
         before = int(number) - 1 if parts > 1 else 0
-        # Stages that come again, as for smooth meshes, leave some for the end.
-        own = min((self._done + grown) / _ALL, 0.99)
-        self._share = max(self._share, (before + own) / parts)
+        own = self._ended + grown if self._ended else _foreseen(self._done + grown)
+        self._share = max(self._share, (before + min(own / _ALL, 0.99)) / parts)
         return self._share
 
     @property
     def left(self) -> float | None:
         """Seconds that the rest will take, about; None while nobody knows."""
         return left(self.share, time.monotonic() - self._begun)
+
+
+def _foreseen(done: float) -> float:
+    """How much is done before the last stages begin, which nobody knows: smooth meshes have most stages twice."""
+    before = _ALL - _END
+    return before * (1 - math.exp(-1.2 * done / before)) / (1 - math.exp(-2.4))
 
 
 def left(share: float, elapsed: float) -> float | None:

@@ -6,7 +6,6 @@ number. A process that dies costs nobody else anything: its item is tried once m
 
 from __future__ import annotations
 
-import contextlib
 import os
 import pickle
 import queue
@@ -15,6 +14,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -113,6 +113,8 @@ class _Pool:
 
     def _end(self, threads: list[threading.Thread]) -> None:
         self._over = True
+        with suppress(AttributeError, ValueError):  # who waits for an item is told that there is none
+            self._items.close()  # type: ignore[attr-defined]
         for process in list(self._processes):
             process.kill()
         for thread in threads:
@@ -181,6 +183,8 @@ class _Pool:
         pipe = subprocess.PIPE
         process = subprocess.Popen([sys.executable, "-c", _START], stdin=pipe, stdout=pipe, start_new_session=True)
         self._processes.add(process)
+        if self._over:  # since the item was taken
+            process.kill()
         assert process.stdin is not None
         try:
             pickle.dump(sys.path, process.stdin)
@@ -194,7 +198,7 @@ class _Pool:
         """Let a process end, and say how it did."""
         for stream in (process.stdin, process.stdout):
             if stream is not None:
-                with contextlib.suppress(OSError):
+                with suppress(OSError):
                     stream.close()
         status = process.wait()
         self._processes.discard(process)

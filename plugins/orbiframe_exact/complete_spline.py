@@ -73,3 +73,14 @@ def holding(breaks: Floats, at: Floats) -> Bools:
     found = np.zeros(len(breaks) - 1, dtype=np.bool_)
     found[np.clip(np.searchsorted(breaks, at) - 1, 0, len(found) - 1)] = True
     return found
+
+
+def refined(breaks: Floats, finer: Floats, poles: Floats) -> Floats:
+    """The control points (n, ...) of a spline with more breaks: the same function, by values at Greville's points."""
+    if len(finer) == len(breaks):
+        return poles
+    knots = full_knots(finer)
+    at = np.array([knots[n + 1 : n + 1 + DEGREE].mean() for n in range(len(knots) - DEGREE - 1)])
+    values = evaluate(breaks, poles, at)
+    matrix = BSpline.design_matrix(at, knots, DEGREE).toarray()
+    return np.asarray(np.linalg.solve(matrix, values.reshape(len(at), -1)).reshape(len(at), *poles.shape[1:]))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
@@ -26,49 +28,74 @@ from orbiframe.surfaces import PeriodicPatch, patches_of
 from orbiframe_exact.faces_of_surface import described, fitted
 from orbiframe_exact.shapes import shape_of
 from orbiframe_exact.spline_shapes import spline_shape
+from orbiframe_exact.step_text import shorter
 
 # Files have no time of day and no path, so that one surface always gives the same bytes.
 _TIME = "1970-01-01T00:00:00"
 _NAME = "surface"
+_LONGEST = 60
+# What Open CASCADE calls a unit of length, and its millimetres; those of units of meshes.
+_UNITS = {"mm": ("MM", 1.0), "cm": ("CM", 10.0), "m": ("M", 1000.0), "in": ("INCH", 25.4)}
+_MILLIMETRES = {"millimetre": 1.0, "metre": 1000.0}
 _SYSTEM = f"orbiframe {__version__}"
 
 _AS_TOPOLOGY = 1  # IGES: shells and solids that share their edges, not a heap of trimmed surfaces
 
 
 def write_step(
-    path: Path, surface: OrbifoldSurface, *, exact: bool = True, faces: int = 0, tolerance: float = 1e-4
+    path: Path,
+    surface: OrbifoldSurface,
+    *,
+    exact: bool = True,
+    faces: int = 0,
+    tolerance: float = 1e-4,
+    unit: str = "mm",
+    name: str = _NAME,
 ) -> dict[str, Any]:
-    """The surface in a STEP file (AP214, millimetres): a solid where it has an inside, else a shell.
+    """The surface in a STEP file (AP214): a solid where it has an inside, else a shell.
 
     exact: as rational patches, three for each micro triangle; a tensor product is one periodic surface. Otherwise a few
     polynomial B-spline faces near the surface: faces, about so many, 0 for as many as its topology suggests; tolerance,
     their largest distance from the surface as a share of the diagonal of its box. Returns what they are in numbers.
-    A surface in metres is converted, with a notice; one of no unit is written as it is. Raises FitError for a surface
-    without exact patches, or derivatives, or where Open CASCADE fails.
+    unit: mm, cm, m or in; a surface in another one is converted, with a notice, and one of no unit has its numbers in
+    this one. name: of the product; letters, digits and ._- are kept. Raises FitError for a surface without exact
+    patches, or derivatives, for another unit, or where Open CASCADE fails.
     """
-    shape, found, periodic = _shape(_in_millimetres(path, surface), exact, faces, tolerance)
+    shape, found, periodic = _shape(_in_unit(path, surface, unit), exact, faces, tolerance)
     _silence()
     writer = STEPControl_Writer()
-    Interface_Static.SetCVal_s("write.step.unit", "MM")
+    Interface_Static.SetCVal_s("write.step.unit", _UNITS[unit][0])
     # Readers find lines in the parameter squares of patches again, and without them files are smaller by a third; not
     # so on a periodic surface, where two of them are one curve in space.
     Interface_Static.SetIVal_s("write.surfacecurve.mode", int(periodic))
-    _require(writer.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone, "convert the shape to STEP")
-    _sign_step(writer)
+    with _lengths_in(unit):
+        _require(writer.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone, "convert the shape to STEP")
+    _sign_step(writer, _plain(name))
     _require(writer.Write(str(path)) == IFSelect_RetDone, "write the STEP file")
+    if not exact:
+        Path(path).write_text(shorter(Path(path).read_text(encoding="ascii")), encoding="ascii")
     return found
 
 
 def write_iges(
-    path: Path, surface: OrbifoldSurface, *, exact: bool = True, faces: int = 0, tolerance: float = 1e-4
+    path: Path,
+    surface: OrbifoldSurface,
+    *,
+    exact: bool = True,
+    faces: int = 0,
+    tolerance: float = 1e-4,
+    unit: str = "mm",
+    name: str = _NAME,
 ) -> dict[str, Any]:
-    """The surface in an IGES file (5.3, millimetres); for exact, faces and tolerance see `write_step`."""
-    shape, found, _ = _shape(_in_millimetres(path, surface), exact, faces, tolerance)
+    """The surface in an IGES file (5.3); for the options see `write_step`."""
+    placed = _in_unit(path, surface, unit)
+    # The writer takes shapes for millimetres and converts them.
+    shape, found, _ = _shape(_scaled(placed, _UNITS[unit][1]), exact, faces, tolerance)
     _silence()
-    writer = IGESControl_Writer("MM", _AS_TOPOLOGY)
+    writer = IGESControl_Writer(_UNITS[unit][0], _AS_TOPOLOGY)
     _require(bool(writer.AddShape(shape)), "convert the shape to IGES")
     writer.ComputeModel()
-    _sign_iges(writer)
+    _sign_iges(writer, _plain(name))
     Path(path).write_bytes(_iges_text(writer.Model()))
     return found
 
@@ -84,12 +111,35 @@ def _shape(surface: OrbifoldSurface, exact: bool, faces: int, tolerance: float) 
     return shape, found, False
 
 
-def _in_millimetres(path: Path, surface: OrbifoldSurface) -> OrbifoldSurface:
-    if surface.unit != "metre":
+def _in_unit(path: Path, surface: OrbifoldSurface, unit: str) -> OrbifoldSurface:
+    """The surface with its lengths in a unit; as it is where it has none."""
+    if unit not in _UNITS:
+        raise FitError(f"lengths are written in {', '.join(_UNITS)}, not in '{unit}'; name one of these")
+    factor = _MILLIMETRES.get(surface.unit or "", _UNITS[unit][1]) / _UNITS[unit][1]
+    if factor == 1:
         return surface
-    told = "coordinates are converted from metres to millimetres (times 1000)"
+    told = f"coordinates are converted from {surface.unit}s to {unit} (times {factor:.10g})"
     warnings.warn(f"{path.name}: {told}", Notice, stacklevel=3)
-    return replace(surface, origin=1000 * surface.origin, scale=1000 * surface.scale)
+    return _scaled(surface, factor)
+
+
+def _scaled(surface: OrbifoldSurface, factor: float) -> OrbifoldSurface:
+    return replace(surface, origin=factor * surface.origin, scale=factor * surface.scale)
+
+
+@contextmanager
+def _lengths_in(unit: str) -> Iterator[None]:
+    """What Open CASCADE takes the lengths of shapes for; millimetres again afterwards, for all of the process."""
+    Interface_Static.SetCVal_s("xstep.cascade.unit", _UNITS[unit][0])
+    try:
+        yield
+    finally:
+        Interface_Static.SetCVal_s("xstep.cascade.unit", "MM")
+
+
+def _plain(name: str) -> str:
+    """A name that every reader takes: as much of it as is letters, digits and ._-"""
+    return re.sub(r"[^A-Za-z0-9._-]+", "_", name)[:_LONGEST] or _NAME
 
 
 def _iges_text(model: Any) -> bytes:
@@ -102,15 +152,15 @@ def _iges_text(model: Any) -> bytes:
     return lines.getvalue()
 
 
-def _sign_step(writer: Any) -> None:
+def _sign_step(writer: Any, name: str) -> None:
     model = writer.Model()
     entities = (model.Value(number) for number in range(1, model.NbEntities() + 1))
     product = next(entity for entity in entities if isinstance(entity, StepBasic_Product))
     # By itself Open CASCADE counts the products of the process.
-    product.SetId(_text(_NAME))
-    product.SetName(_text(_NAME))
+    product.SetId(_text(name))
+    product.SetName(_text(name))
     header = APIHeaderSection_MakeHeader(model)
-    header.SetName(_text(_NAME))
+    header.SetName(_text(name))
     header.SetTimeStamp(_text(_TIME))
     header.SetAuthorValue(1, _text(""))
     header.SetOrganizationValue(1, _text(""))
@@ -118,14 +168,14 @@ def _sign_step(writer: Any) -> None:
     header.SetAuthorisation(_text(""))
 
 
-def _sign_iges(writer: Any) -> None:
+def _sign_iges(writer: Any, name: str) -> None:
     model = writer.Model()
     section: IGESData_GlobalSection = model.GlobalSection()
     date = _TIME.replace("-", "").replace("T", ".").replace(":", "")
     signatures: tuple[tuple[Callable[[Any], None], str], ...] = (
-        (section.SetSendName, _NAME),
-        (section.SetReceiveName, _NAME),
-        (section.SetFileName, _NAME),
+        (section.SetSendName, name),
+        (section.SetReceiveName, name),
+        (section.SetFileName, name),
         (section.SetSystemId, _SYSTEM),
         (section.SetAuthorName, ""),
         (section.SetCompanyName, ""),

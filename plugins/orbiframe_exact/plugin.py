@@ -32,4 +32,11 @@ def orbiframe_components() -> list[Component]:
             extra="orbiframe[cad]",
             suffixes=(".iges", ".igs"),
         ),
+        Component(
+            "exporter",
+            "gismo",
+            "orbiframe_exact.gismo:write_gismo",
+            "a few B-spline patches with their interfaces, for isogeometric analysis with G+Smo",
+            suffixes=(".xml",),
+        ),
     ]

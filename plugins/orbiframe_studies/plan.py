@@ -6,17 +6,19 @@ import itertools
 import json
 import math
 from collections.abc import Generator, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from orbiframe import Config, ConfigError, Registry
+from orbiframe import Config, ConfigError, PluginError, Registry
 from orbiframe.fitting import content_key, file_key, source_key
 from orbiframe_studies.search import suggestions
 from orbiframe_studies.study import Case, Study, Until
 from orbiframe_studies.study_file import with_mapping
 
 Row = Mapping[str, Any]
+_CHOSEN = ("parametrizer", "marker")
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,10 +177,19 @@ class Plan:
         if text not in self._resolved:
             config = self.config(tables)
             resolved = config.resolved(self.registry)
-            steps = {name: step for name, step in config.steps.items() if not step.open}
-            sources = {name: source_key(self.registry.load(step.kind, step.name)) for name, step in steps.items()}
+            sources = {name: self._sources(step.kind, step.name, step.open) for name, step in config.steps.items()}
             self._resolved[text] = {"config": resolved, "sources": sources}
         return self._resolved[text]
+
+    def _sources(self, kind: str, name: str, free: bool) -> list[str]:
+        """The sources of the component of a step; of all maps and markers, where the mesh chooses one of them."""
+        if not free:
+            return [source_key(self.registry.load(kind, name))]
+        found = []
+        for component in self.registry.components(kind) if kind in _CHOSEN else []:
+            with suppress(PluginError):
+                found.append(source_key(self.registry.load(kind, component.name)))
+        return found
 
     def _require_configs(self) -> None:
         """Raise what is wrong with any configuration of the study, before any work."""

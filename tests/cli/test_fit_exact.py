@@ -26,7 +26,7 @@ def test_the_surface_itself_is_written(orbiframe, cube, tmp_path, suffix):
     if suffix != ".vtu":
         pytest.importorskip("OCP", reason='Open CASCADE is the extra "orbiframe[cad]"')
     path = tmp_path / f"shape{suffix}"
-    ran = orbiframe("fit", cube, "-o", path, "--basis", "ps2", "--size", 40)
+    ran = orbiframe("fit", cube, "-o", path, "--basis", "ps2", "--size", 40, "--exact")
     assert (ran.status, ran.err) == (0, "")
     assert "exact rational patches" in ran.out
     assert path.stat().st_size > 10_000

@@ -34,11 +34,39 @@ def test_the_report_has_the_faces(orbiframe, tmp_path):
     assert found["valid"]
 
 
-def test_splines_have_exact_patches_unless_faces_are_asked_for(orbiframe, tmp_path):
-    plain = orbiframe("fit", CUBE, "-o", tmp_path / "a.step", "--basis", "ps6", "--size", 60)
-    few = orbiframe("fit", CUBE, "-o", tmp_path / "b.step", "--basis", "ps6", "--size", 60, "--export-tolerance", 1e-3)
-    assert "exact rational patches" in plain.out
+def test_splines_have_exact_patches_where_these_are_asked_for(orbiframe, tmp_path):
+    exact = orbiframe("fit", CUBE, "-o", tmp_path / "a.step", "--basis", "ps6", "--size", 60, "--exact")
+    few = orbiframe("fit", CUBE, "-o", tmp_path / "b.step", "--basis", "ps6", "--size", 60)
+    assert "exact rational patches" in exact.out
     assert "B-spline faces" in few.out
+
+
+@pytest.mark.parametrize("form", [("--export-tolerance", 1e-2), ("--basis", "ps2", "--exact")])
+@pytest.mark.parametrize(("unit", "words"), [("in", "INCH"), ("m", "SI_UNIT($,.METRE.)"), (None, ".MILLI.,.METRE.")])
+def test_lengths_are_in_the_unit_that_is_asked_for(orbiframe, tmp_path, unit, words, form):
+    """The numbers of a mesh without a unit stay; a reader that works in millimetres sees them in the unit."""
+    asked = () if unit is None else ("--unit", unit)
+    ran = orbiframe("fit", CUBE, "-o", tmp_path / "part.step", "--size", 40, "--fast", *form, *asked)
+    assert (ran.status, ran.err) == (0, "")
+    text = (tmp_path / "part.step").read_text()
+    assert words in text
+    assert "PRODUCT('cube','cube'" in text
+    millimetres = {"in": 25.4, "m": 1000.0, None: 1.0}[unit]
+    assert volume_of(tmp_path / "part.step") / millimetres**3 == pytest.approx(1, rel=0.1)
+
+
+def test_lengths_of_iges_are_in_the_unit_that_is_asked_for(orbiframe, tmp_path):
+    path = tmp_path / "a.iges"
+    options = ("--size", 40, "--fast", "--export-tolerance", 1e-2, "--unit", "in")
+    assert orbiframe("fit", CUBE, "-o", path, *options).status == 0
+    assert "INCH" in path.read_text()
+    assert volume_of(path) / 25.4**3 == pytest.approx(1, rel=0.1)
+
+
+def volume_of(path):
+    from opened_shapes import read_back, volume
+
+    return abs(volume(read_back(path)))
 
 
 def test_what_is_not_reached_is_told_with_its_place(orbiframe, tmp_path, monkeypatch):

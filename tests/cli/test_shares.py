@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import sys
+import threading
 
 import pytest
 
@@ -105,6 +106,46 @@ def test_a_long_stage_is_told_again(monkeypatch):
     progress.close()
     alive = events(stream.getvalue())[1]
     assert (alive["event"], alive["stage"]) == ("alive", "fit")
+
+
+def test_a_command_without_stages_is_alive(monkeypatch):
+    from orbiframe.cli import progress as module
+
+    monkeypatch.setattr(module, "_TICK", 0.01)
+    monkeypatch.setattr(sys, "stderr", stream := io.StringIO())
+    progress = Progress(mode="json")
+    progress.watch("group")
+    while "alive" not in stream.getvalue():
+        module.time.sleep(0.01)
+    progress.close()
+    assert events(stream.getvalue())[0]["stage"] == "group"
+    Progress(stream, mode="auto").watch("group")
+    assert events(stream.getvalue())[-1]["event"] == "alive"
+
+
+def test_nothing_is_told_when_nothing_goes_on(monkeypatch):
+    from orbiframe.cli import progress as module
+
+    monkeypatch.setattr(module, "_TICK", 0.01)
+    monkeypatch.setattr(sys, "stderr", stream := io.StringIO())
+    before = threading.active_count()
+    progress = Progress(mode="json")
+    progress("fit", None)
+    progress("fit", 1.0)
+    while threading.active_count() > before:
+        module.time.sleep(0.01)
+    assert [event["event"] for event in events(stream.getvalue()) if event["event"] != "alive"] == ["stage"] * 2
+    assert events(stream.getvalue())[-1]["state"] == "ends"
+
+
+def test_a_cell_of_a_notebook_is_written_over_like_a_terminal():
+    shown = type("OutStream", (io.StringIO,), {"__module__": "ipykernel.iostream"})()
+    progress = Progress(shown)
+    progress("map", None)
+    assert shown.getvalue() == "\rmap …"
+    progress("map", 1.0)
+    assert shown.getvalue().endswith("1.00 s\n")
+    progress.close()
 
 
 def test_all_that_is_said_is_json_then(orbiframe, cube, tmp_path):

@@ -63,6 +63,34 @@ def test_whoever_stops_listening_ends_the_processes():
     assert time.monotonic() - begun < 30
 
 
+class Waiting:
+    """One item, and then nothing until it is closed."""
+
+    def __init__(self) -> None:
+        self.given, self.closed = False, threading.Event()
+
+    def __iter__(self):
+        return self
+
+    def __next__(self):
+        if self.given:
+            self.closed.wait()
+            raise StopIteration
+        self.given = True
+        return 1
+
+    def close(self) -> None:
+        self.closed.set()
+
+
+def test_whoever_waits_for_an_item_is_told_that_there_is_none():
+    before = threading.active_count()
+    outcomes = work(Waiting(), adding, (0,), workers=2)
+    assert next(outcomes).result[0] == 1
+    outcomes.close()
+    assert threading.active_count() == before
+
+
 def test_items_that_cannot_be_had_stop_the_work():
     def items():
         yield 1
