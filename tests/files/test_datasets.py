@@ -38,6 +38,15 @@ def test_a_name_that_is_not_there_gets_the_nearest_one():
         read("dataset:../pyproject", REGISTRY)
 
 
+def test_the_reference_names_them_all():
+    page = (Path(__file__).parents[2] / "docs" / "reference" / "cli.md").read_text()
+    told = (
+        page.partition("one that comes with orbiframe: ")[2].partition(".")[0].replace(" or ", ", ").replace("\n", " ")
+    )
+    folder = Path(__file__).parents[2] / "datasets"
+    assert [name.strip() for name in told.split(",")] == sorted(file.stem for file in folder.glob("*.off"))
+
+
 def test_commands_take_them(orbiframe, tmp_path):
     assert orbiframe("info", "dataset:torus").out.startswith("closed, orientable, genus 1")
     assert orbiframe("convert", "dataset:torus", tmp_path / "torus.ply").status == 0
