@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 
 import pluggy
 
@@ -40,7 +40,8 @@ class Component:
     kind: one of `KINDS`; name: as written in a configuration ("least-squares"); target: "package.module:object";
     summary: one line, shown by `orbiframe plugins`; extra: the pip requirement that supplies an optional dependency;
     suffixes: file suffixes with their dot, lower case (kinds that read or make files only); welds: whether every face
-    has corners of its own in the file, of which the reader joins the equal ones.
+    has corners of its own in the file, of which the reader joins the equal ones; meanings: what each option means, by
+    its name, for the reference, the schema and the commented default of configurations.
     """
 
     kind: str
@@ -50,6 +51,7 @@ class Component:
     extra: str | None = None
     suffixes: tuple[str, ...] = ()
     welds: bool = False
+    meanings: Mapping[str, str] = field(default_factory=dict, hash=False)
 
 
 @hookspec

@@ -105,7 +105,7 @@ def _convert(
 
 def _options(args: argparse.Namespace) -> dict[str, dict[str, Any]]:
     """The options of the reader and of the writer."""
-    from orbiframe.fitting.config import parsed_override, require_table
+    from orbiframe.fitting.config_text import parsed_override, require_table
 
     tables: dict[str, dict[str, Any]] = {"reader": {}, "writer": {"ascii": True} if args.ascii else {}}
     for text in args.set:

@@ -9,7 +9,6 @@ from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from orbiframe.cli.progress import Progress
 from orbiframe.cli.repairs import add_repairs, repaired, repairs_asked
 from orbiframe.cli.report import json_text, summary, write_report
 from orbiframe.cli.speech import say
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
     from orbiframe.fitting.config import Config
     from orbiframe.fitting.parts import Parts
     from orbiframe.fitting.pipeline import Result
+    from orbiframe.fitting.stages import Progress
     from orbiframe.meshes.polyhedron import Polyhedron
 
 
@@ -32,8 +32,11 @@ _MOST_FACES, _LEAST_TOLERANCE = 5000, 1e-7
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add("mesh", metavar="MESH", type=Path, help="closed surfaces, one or several, orientable or not, of any genus")
-    add("-o", "--output", metavar="OUT", type=Path, required=True, help="a fine mesh, or the exact surface as .step")
+    add("mesh", metavar="MESH", type=Path, nargs="+", help="closed surfaces, orientable or not, of any genus")
+    add("-o", "--output", metavar="OUT", type=Path, help="a fine mesh, or the exact surface as .step")
+    add("--into", metavar="DIR", type=Path, help="the folder for many meshes, instead of -o")
+    add("--to", metavar="SUFFIX", default="ply", help="with --into: the suffix of the files; default ply")
+    add("--workers", metavar="N", type=int, default=1, help="with --into: so many processes at once; default 1")
     add("--config", metavar="FILE.toml", type=Path, help="components and options of the steps")
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=200")
     add("--group", metavar="NAME", help="a named group, such as regular-polygon; else that of the mesh (group.method)")
@@ -63,22 +66,33 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--json", action="store_true", help="print the report as JSON instead of the summary")
     add("--quiet", action="store_true", help="print nothing but errors")
     add_repairs(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, wrong_use=parser.error)
 
 
 def run(args: argparse.Namespace, registry: Registry) -> int:
-    """Fit, write what was asked for, and say what came out."""
+    """Fit, write what was asked for, and say what came out; many meshes with --into."""
+    if args.into is not None:
+        from orbiframe.cli.fit_many import run_many
+
+        return run_many(args, registry)
+    if args.output is None or len(args.mesh) > 1:
+        args.wrong_use("give one MESH and -o OUT, or any number of meshes and --into DIR")
+    args.mesh = args.mesh[0]
+    report, written = fitted(args, registry, args.progress)
+    if not args.quiet:
+        print(json_text(report) if args.json else summary(report, written=written))
+    return 0
+
+
+def fitted(args: argparse.Namespace, registry: Registry, progress: Progress) -> tuple[dict[str, Any], str | None]:
+    """Fit one mesh and write what was asked for; the report, and what was written where that is no mesh."""
     from orbiframe.files import gate
     from orbiframe.fitting.config import Config
     from orbiframe.fitting.parts import fit_parts
 
-    config = Config.load(args.config, overrides(args))
-    for path in config.plugins:
-        registry.add_file(path)
-    config.checked(registry)
+    config = Config.load(args.config, overrides(args), registry)
     _require_destinations(args, config, registry)
     mesh = _repaired(args, config, registry) if repairs_asked(args) else args.mesh
-    progress = Progress(quiet=args.quiet)
     found = fit_parts(mesh, config, registry, progress)
     written, kind = None, _kind(args, config, registry)
     if kind == "elements":
@@ -92,9 +106,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
         _save(args.save, found)
     if args.report:
         write_report(args.report, found.report)
-    if not args.quiet:
-        print(json_text(found.report) if args.json else summary(found.report, written=written))
-    return 0
+    return found.report, written
 
 
 def _only(found: Parts, path: Path) -> Result:

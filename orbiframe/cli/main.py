@@ -10,12 +10,13 @@ import warnings
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib.metadata import version
+from itertools import pairwise
 
 from orbiframe.cli import plugin as commands
 from orbiframe.cli.blame import named
 from orbiframe.cli.patience import patient
-from orbiframe.cli.progress import Progress, compilation_told
-from orbiframe.cli.speech import any_letter, fill_closed_streams, say, silence
+from orbiframe.cli.progress import MODES, Progress, compilation_told
+from orbiframe.cli.speech import any_letter, fill_closed_streams, said_to_programs, say, silence
 from orbiframe.components.registry import Registry
 from orbiframe.errors import OrbiframeError, PluginError, UsageError
 
@@ -33,7 +34,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = sys.argv[1:] if argv is None else list(argv)
     _fix_threads()
     fill_closed_streams()
-    with warnings.catch_warnings(), any_letter():
+    with warnings.catch_warnings(), any_letter(), said_to_programs(_for_programs(arguments)):
         debug = "--debug" in arguments
         _show_warnings_of_users(debug)
         try:
@@ -43,6 +44,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         except (Exception, KeyboardInterrupt) as error:
             status = 0 if isinstance(error, BrokenPipeError) else _report(error, debug)
         return _flushed(status)
+
+
+def _for_programs(arguments: Sequence[str]) -> bool:
+    """Whether the standard error stream is to hold lines of JSON, which wrong arguments too are told in."""
+    after = dict(pairwise(arguments))
+    return "--progress=json" in arguments or after.get("--progress") == "json"
 
 
 def _fix_threads() -> None:
@@ -60,15 +67,30 @@ def _run(arguments: list[str]) -> int:
     for plugin, seconds in registry.slow:
         say(f"the plugin '{plugin}' took {seconds:.1f} s to declare itself; it should import nothing heavy for that")
     try:
-        with patient(_command(arguments) or "orbiframe", quiet="--quiet" in arguments):
-            args = parsed(arguments, registry)
-            with compilation_told(quiet=getattr(args, "quiet", False)):
-                return _status(args.run(args, registry), args, registry)
+        with patient(_command(arguments) or "orbiframe", quiet=_quiet(arguments)):
+            return _done(parsed(arguments, registry), registry)
     except Exception as error:
         told = named(error, registry)
         if told is error:
             raise
         raise told from error
+
+
+def _quiet(arguments: Sequence[str]) -> bool:
+    """Whether nothing is to be said of what goes on, or all in lines of JSON, which have signs of life of their own."""
+    after = dict(pairwise(arguments))
+    none = "--progress=none" in arguments or after.get("--progress") == "none"
+    return "--quiet" in arguments or none or _for_programs(arguments)
+
+
+def _done(args: argparse.Namespace, registry: Registry) -> int:
+    """Run the command, with its progress told; its exit status."""
+    args.progress.watch(args.command)
+    try:
+        with compilation_told(quiet=args.progress.mode == "none", json=args.progress.mode == "json"):
+            return _status(args.run(args, registry), args, registry)
+    finally:
+        args.progress.close()
 
 
 def _status(found: object, args: argparse.Namespace, registry: Registry) -> int:
@@ -91,8 +113,8 @@ def parsed(arguments: list[str], registry: Registry) -> argparse.Namespace:
         registry.component("command", chosen)
     parser.set_defaults(run=lambda *_: _print_help(parser))
     args = parser.parse_args(arguments)
-    args.command = chosen
-    args.progress = Progress(quiet=getattr(args, "quiet", False))
+    args.command = chosen or ""
+    args.progress = Progress(quiet=getattr(args, "quiet", False), mode=args.progress)
     return args
 
 
@@ -114,11 +136,11 @@ def _parser(registry: Registry, chosen: str | None, *, whole: bool = False) -> a
     """The parser of all commands; only the chosen one is imported and has its arguments, or all."""
     parser = argparse.ArgumentParser("orbiframe", description=_description(), epilog=EPILOG)
     parser.add_argument("--version", action="version", version=f"orbiframe {version('orbiframe')}")
-    _add_debug(parser, False)
+    _add_common(parser, False, "auto")
     subparsers = parser.add_subparsers(metavar="COMMAND", title="commands")
     for component in registry.components("command"):
         sub = subparsers.add_parser(component.name, help=component.summary, description=component.summary)
-        _add_debug(sub, argparse.SUPPRESS)
+        _add_common(sub, argparse.SUPPRESS, argparse.SUPPRESS)
         if component.name == chosen:
             registry.load("command", component.name)(sub)
         elif whole:
@@ -131,8 +153,11 @@ def _description() -> str:
     return "One truly smooth surface from any closed polyhedron: spline orbifolds for every genus, orientable or not."
 
 
-def _add_debug(parser: argparse.ArgumentParser, default: object) -> None:
-    parser.add_argument("--debug", action="store_true", default=default, help="show the traceback of an error")
+def _add_common(parser: argparse.ArgumentParser, debug: object, progress: str) -> None:
+    parser.add_argument("--debug", action="store_true", default=debug, help="show the traceback of an error")
+    parser.add_argument(
+        "--progress", choices=MODES, default=progress, help="on long work: auto, on terminals; json, for programs; none"
+    )
 
 
 def _show_warnings_of_users(debug: bool) -> None:
@@ -156,7 +181,7 @@ def _report(error: BaseException, debug: bool) -> int:
 
 def _sentence(error: BaseException) -> str:
     if isinstance(error, KeyboardInterrupt):
-        return "interrupted"
+        return str(error) or "interrupted"
     if isinstance(error, MemoryError):
         return "not enough memory; take a smaller mesh, basis or refinement"
     if isinstance(error, OrbiframeError | OSError):

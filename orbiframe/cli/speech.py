@@ -2,20 +2,48 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import TextIO
 
 from orbiframe.components.shown_text import shown
 
+_for_programs = False
+_writing = threading.Lock()
+
 
 def say(text: str) -> None:
     """Write a line on the standard error stream, in one line; where it is full or closed nothing is said."""
+    if _for_programs:
+        say_event("says", text=shown(text))
+    else:
+        _write(f"orbiframe: {shown(text)}")
+
+
+def say_event(event: str, **content: object) -> None:
+    """Write a line of JSON on the standard error stream, for programs."""
+    _write(json.dumps({"event": event, **content}))
+
+
+@contextmanager
+def said_to_programs(wanted: bool) -> Iterator[None]:
+    """Within, if wanted, everything on the standard error stream is a line of JSON."""
+    global _for_programs
+    before, _for_programs = _for_programs, wanted
+    try:
+        yield
+    finally:
+        _for_programs = before
+
+
+def _write(line: str) -> None:
     if sys.stderr is not None:
-        with suppress(OSError, ValueError):
-            print(f"orbiframe: {shown(text)}", file=sys.stderr, flush=True)
+        with suppress(OSError, ValueError), _writing:
+            print(line, file=sys.stderr, flush=True)
 
 
 @contextmanager

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterable
 from importlib.metadata import EntryPoint
 from pathlib import Path
+from types import ModuleType
 from typing import Any, TypeGuard, cast
 
 import pluggy
@@ -26,6 +27,9 @@ OWN = "orbiframe"
 # Seconds after which the declarations of a plugin are called slow.
 SLOW = 0.5
 
+# The name of a plugin, and where it comes from: the name of a module, a file, or an object of its own.
+Origin = tuple[str, object]
+
 
 class Registry:
     """The components that plugins declare; an object that is passed down, never a global.
@@ -33,7 +37,9 @@ class Registry:
     A plugin that cannot be loaded is written into `broken`, as (name of the plugin, what went wrong), and stops nobody
     else; one whose declarations take long, into `slow`, as (name, seconds). Nothing that a component names is imported
     before `load`; `used` has the plugins, none of orbiframe's own, of what has been loaded. A name belongs to
-    orbiframe's own component where it has one; that of another plugin is asked for as "plugin:name".
+    orbiframe's own component where it has one; that of another plugin is asked for as "plugin:name". A registry can be
+    pickled: what arrives elsewhere has the same plugins, loaded there again, and the same plugin files, which must be
+    there too.
     """
 
     def __init__(self) -> None:
@@ -44,6 +50,7 @@ class Registry:
         self._manager = pluggy.PluginManager(GROUP)
         self._manager.add_hookspecs(hooks)
         self._declared: list[tuple[Component, str]] = []
+        self._origins: list[Origin] = []
 
     def __repr__(self) -> str:
         plugins = len({owner for _, owner in self._declared})
@@ -83,14 +90,21 @@ class Registry:
             raise
         if getattr(declarations, "__name__", "").partition(".")[0] == OWN:
             self._own.add(name)
+        self._origins.append((name, declarations.__name__ if isinstance(declarations, ModuleType) else declarations))
 
     def add_file(self, path: Path) -> None:
-        """Add the plugin that one Python file declares. Raises PluginError where it cannot be loaded."""
+        """Add the plugin that one Python file declares, once. Raises PluginError where it cannot be loaded."""
+        if self._manager.has_plugin(str(path)):
+            return
         try:
             module = imported_file(path)
         except (Exception, SystemExit) as error:
             raise PluginError(f"the plugin file {path} cannot be loaded: {described(error)}") from error
         self.register(str(path), module)
+        self._origins[-1] = str(path), path.absolute()
+
+    def __reduce__(self) -> tuple[Callable[..., Registry], tuple[list[Origin], list[tuple[str, str]], set[str]]]:
+        return _again, (self._origins, self.broken, self._own)
 
     # ---- asking ---------------------------------------------------------------------------------------------------
 
@@ -205,6 +219,21 @@ class Registry:
             raise PluginError(f"plugin '{name}' declares no hook; mark orbiframe_components with @hookimpl")
         found = call_each(self._manager, "orbiframe_components", only=declarations)
         return [sound(item, name) for items in found for item in cast("Iterable[object]", items)]
+
+
+def _again(origins: list[Origin], broken: list[tuple[str, str]], own: set[str]) -> Registry:
+    """The registry of these plugins, loaded in this process."""
+    registry = Registry()
+    for name, origin in origins:
+        if isinstance(origin, Path):
+            module: object = imported_file(origin)
+        else:
+            module = importlib.import_module(origin) if isinstance(origin, str) else origin
+        registry.register(name, module)
+        registry._origins[-1] = name, origin
+    registry.broken += broken
+    registry._own |= own
+    return registry
 
 
 def resolve(component: Component, title: str = "") -> Callable[..., Any]:

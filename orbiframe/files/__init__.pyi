@@ -6,6 +6,7 @@ from .destination import (
     require_picture as require_picture,
 )
 from .gate import export as export, read as read, write as write, write_elements as write_elements
+from .lock import file_lock as file_lock
 from .outputs import (
     output as output,
     require_apart as require_apart,

@@ -1,5 +1,12 @@
 """The public names of orbiframe.fitting, each with the module it lives in."""
 
 from .config import Config as Config
-from .parts import fit_parts as fit_parts
+from .config_text import Overrides as Overrides, override_items as override_items, read_tables as read_tables
+from .content import content_key as content_key, file_key as file_key, source_key as source_key
+from .kept_maps import KeptMaps as KeptMaps
+from .keys import ConfigKey as ConfigKey, config_keys as config_keys
+from .parts import Parts as Parts, fit_parts as fit_parts
 from .pipeline import fit as fit
+from .report import versions as versions
+from .schema import config_schema as config_schema
+from .template import config_template as config_template, toml_value as toml_value

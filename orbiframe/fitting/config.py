@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-import re
-import tomllib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from annotated_types import Ge, Gt
 
 from orbiframe.components.options import Option, checked_options, checked_value, options_of, place_of, require_known
 from orbiframe.components.registry import Registry
-from orbiframe.components.shown_text import shown
-from orbiframe.components.suggestion import did_you_mean
-from orbiframe.errors import ConfigError, FormatError, PluginError, UsageError
-from orbiframe.files.places import require_readable
+from orbiframe.errors import ConfigError, PluginError, UsageError
+from orbiframe.fitting.config_text import Overrides, override_items, read_tables, require_table
 from orbiframe.fitting.limits import require_size
 from orbiframe.plugin import OPEN_NAMES
 
@@ -78,7 +74,6 @@ STEPS = {
     "fitter": ("fitter", "name", "sliding"),
 }
 TABLES = (*STEPS, "data", "output")
-_LARGEST_FILE = 2**20
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,8 +84,10 @@ class Config:
     "mesh" takes the group from the mesh; marking: cuts the mesh open for a named group; map: "auto" takes the
     parametrizer that fits the geometry and the group; shape: changes the map so that faces become regular, "none"
     leaves it as it is; basis; fitter.
-    places: where each "table.key" was written, for error messages.
+    places: where each "table.key" was written, for error messages. NAMES: of all tables.
     """
+
+    NAMES: ClassVar[tuple[str, ...]] = TABLES
 
     steps: Mapping[str, Step]
     output: Output = field(default_factory=Output)
@@ -99,18 +96,27 @@ class Config:
     places: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
-    def load(cls, path: Path | None = None, overrides: Iterable[str] = ()) -> Config:
-        """The configuration of a TOML file (None: all defaults) with overrides "TABLE.KEY=VALUE".
+    def load(cls, path: Path | None = None, overrides: Overrides = (), registry: Registry | None = None) -> Config:
+        """The configuration of a TOML file (None: all defaults) with overrides, checked.
 
-        A VALUE is read as TOML, and as text where it is none. Plugin files are relative to the folder of the file.
-        Raises ConfigError for text that is not TOML, unknown tables, and values of a wrong type.
+        overrides: texts "TABLE.KEY=VALUE", where a VALUE is read as TOML, and as text where it is none; or a
+        dictionary, {"basis.size": 300} or {"basis": {"size": 300}}. registry: what the configuration is checked
+        against, by default all that is installed; the plugin files of the configuration, relative to the folder of the
+        file, are added to it. Raises ConfigError for text that is not TOML, unknown tables, unknown names and options
+        with the nearest one that is known, and values of a wrong type; PluginError for a plugin that cannot be loaded.
         """
-        text = "" if path is None else _read(path)
-        tables = _parsed(text, path)
-        places = _places(text, path)
-        for override in overrides:
-            table, key, value = parsed_override(override)
-            place = places[f"{table}.{key}"] = f"--set {shown(override, 100)}"
+        config = cls.parsed(path, overrides)
+        registry = Registry.discover() if registry is None else registry
+        for file in config.plugins:
+            registry.add_file(file)
+        return config.checked(registry)
+
+    @classmethod
+    def parsed(cls, path: Path | None = None, overrides: Overrides = ()) -> Config:
+        """The configuration as `load` reads it; names and options are checked when `checked` or `fit` get it."""
+        tables, places = ({}, {}) if path is None else read_tables(path)
+        for table, key, value, place in override_items(overrides):
+            places[f"{table}.{key}"] = place
             require_table(table, TABLES, {table: place})
             tables[table] = {**_table(tables, table, places), key: value}
         return cls.from_tables(tables, places=places, folder=Path() if path is None else path.parent)
@@ -193,6 +199,25 @@ class Config:
         except UsageError as error:
             raise ConfigError(f"{place_of(f'{table}.{key}', self.places)}{error}") from error
 
+    def resolved(self, registry: Registry) -> dict[str, dict[str, Any]]:
+        """Every option that a fit will use, as plain data: those given, and the defaults of the others.
+
+        Of an open step there is what is given; the number of functions is None where the shape decides.
+        """
+        found = {table: self._resolved(table, registry) for table in STEPS}
+        if "size" in found["basis"]:
+            found["basis"]["size"] = self.basis.options.get("size")
+        return {**found, "data": asdict(self.data), "output": asdict(self.output)}
+
+    def _resolved(self, table: str, registry: Registry) -> dict[str, Any]:
+        step = self.steps[table]
+        if step.open:
+            return {STEPS[table][1]: step.name, **step.options}
+        target = self._loaded(table, registry, step.name)
+        defaults = {option.name: option.default for option in options_of(target) if not option.required}
+        given = checked_options(target, step.options, table, self.places, STEPS[table][1])
+        return {STEPS[table][1]: step.name, **defaults, **given}
+
     def checked(self, registry: Registry) -> Config:
         """This configuration, once every named component is known to exist and to take its options.
 
@@ -205,72 +230,6 @@ class Config:
             elif step.options:
                 _require_option_of_kind(table, step, registry, self.places)
         return self
-
-
-def _read(path: Path) -> str:
-    try:
-        require_readable(path, _LARGEST_FILE, empty=True)
-        return path.read_text(encoding="utf-8-sig")
-    except (FormatError, OSError, UnicodeDecodeError) as error:
-        raise ConfigError(f"the configuration {path} cannot be read: {error}") from error
-
-
-def _parsed(text: str, path: Path | None) -> dict[str, Any]:
-    try:
-        return tomllib.loads(text)
-    except ValueError as error:  # also for numbers of thousands of digits
-        raise ConfigError(f"{path} is not TOML: {error}") from error
-    except RecursionError as error:
-        raise ConfigError(f"{path}: lists and tables are nested too deep; no option needs that") from error
-
-
-_HEADER = re.compile(r"\s*\[\s*([\w-]+)\s*\]")
-_KEY = re.compile(r"\s*([\w-]+)\s*=")
-
-
-def _places(text: str, path: Path | None) -> dict[str, str]:
-    """Where every "table.key", "table" and top-level key stands: file and line."""
-    places: dict[str, str] = {}
-    table = ""
-    for number, line in enumerate(text.splitlines(), start=1):
-        place = f"{path}, line {number}"
-        if header := _HEADER.match(line):
-            table = header[1]
-            places.setdefault(table, place)
-        elif key := _KEY.match(line):
-            places.setdefault(f"{table}.{key[1]}".lstrip("."), place)
-    return places
-
-
-def parsed_override(text: str) -> tuple[str, str, Any]:
-    """Table, key and value of "TABLE.KEY=VALUE"; see `Config.load`. Raises ConfigError for any other text."""
-    name, equals, value = text.partition("=")
-    table, dot, key = name.strip().partition(".")
-    if not (equals and dot and table and key):
-        raise ConfigError(f"--set {shown(text, 100)}: write TABLE.KEY=VALUE, such as basis.size=200")
-    return table, key, _toml_value(value.strip())
-
-
-def _toml_value(text: str) -> Any:
-    """The value that a text is in TOML, or the text itself where it is none or more than one."""
-    try:
-        found = tomllib.loads(f"value = {text}")
-    except tomllib.TOMLDecodeError:
-        return text
-    except ValueError as error:  # numbers of thousands of digits
-        raise ConfigError(f"--set …={text[:20]}…: {error}") from error
-    except RecursionError as error:
-        raise ConfigError(f"--set …={text[:20]}…: lists and tables are nested too deep") from error
-    return found["value"] if len(found) == 1 else text
-
-
-def require_table(name: str, known: Sequence[str], places: Mapping[str, str]) -> None:
-    """Raise ConfigError unless a table of this name is known."""
-    if name not in known:
-        place = place_of(name, places)
-        raise ConfigError(
-            f"{place}no table named '{shown(name, 100)}'; allowed: {', '.join(known)}.{did_you_mean(name, known)}"
-        )
 
 
 def _table(tables: Mapping[str, Any], name: str, places: Mapping[str, str]) -> Mapping[str, Any]:

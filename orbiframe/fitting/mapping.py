@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +14,7 @@ from numpy.typing import NDArray
 from orbiframe.components.geometry_names import geometry_name
 from orbiframe.errors import MapError
 from orbiframe.fitting.config import Config
+from orbiframe.fitting.content import content_key, mesh_key, source_key
 from orbiframe.fitting.made import made
 from orbiframe.fitting.stages import Stages
 from orbiframe.groups.group import Group
@@ -116,16 +119,20 @@ class Mapping:
         name = (PARAMETRIZER if group is None else NAMED_PARAMETRIZER)[plane]
         name = name if self.config.map.open else self.config.map.name
         parametrizer = self.config.component("map", self.stages.registry, name)
-        triangulation = made(
-            self.stages.registry,
-            "parametrizer",
-            name,
-            self.stages("map", parametrizer, mesh, geometry, group),
-            Triangulation,
+        triangulation = self.stages.mapped(
+            "map",
+            lambda: self._key("map", name, parametrizer, mesh_key(mesh)),
+            mesh,
+            geometry,
+            partial(self._made, "parametrizer", name, parametrizer, mesh, geometry, group),
         )
         remedy = "map.method = 'auto'" + ("" if group is None else " or group.method = 'mesh'")
         _require_embedding(triangulation, f"the map of '{name}'", remedy)
         return Mapped(refinement, triangulation, self._shaped(refinement, triangulation))
+
+    def _made(self, kind: str, name: str, target: Callable[..., object], *arguments: object) -> Triangulation:
+        """What a component makes of its arguments, if it is a map."""
+        return made(self.stages.registry, kind, name, target(*arguments), Triangulation)
 
     def _geometry(self) -> Geometry:
         """The plane that the configuration names, or that of the Euler characteristic."""
@@ -148,11 +155,21 @@ class Mapping:
             return first
         target = refinement.spread(regular_triangles(self.polyhedron))
         optimizer = self.config.component("shape", self.stages.registry)
-        shaped = made(
-            self.stages.registry, "optimizer", step.name, self.stages("shape", optimizer, first, target), Triangulation
+        shaped = self.stages.mapped(
+            "shape",
+            lambda: self._key("shape", step.name, optimizer, _map_key(first), mesh_key(self.polyhedron)),
+            first.polyhedron,
+            first.orbifold.geometry,
+            partial(self._made, "optimizer", step.name, optimizer, first, target),
         )
         _require_embedding(shaped, f"the shapes of '{step.name}'", "shape.method = 'none'")
         return shaped
+
+    def _key(self, table: str, name: str, made: Callable[..., Triangulation], *content: str) -> str:
+        """The content key of a map: the mesh, the component with its options and source, the group."""
+        steps = {other: self.config.steps[other] for other in (table, "geometry", "group", "marking")}
+        chosen = {other: (step.name, dict(step.options)) for other, step in steps.items()}
+        return content_key({"component": (table, name), "steps": chosen, "source": source_key(made), "of": content})
 
     def _named_group(self, mesh: Polyhedron, geometry: Geometry) -> MarkedGroup:
         """The mesh cut open to a disc, and the group that the configuration names with the word of its boundary."""
@@ -163,6 +180,13 @@ class Mapping:
         found = self.stages("group", config.component("group", registry), geometry, marking.word)
         group = made(self.stages.registry, "group", config.group.name, found, Group)  # type: ignore[type-abstract]
         return MarkedGroup(group, marking, config.group.name)
+
+
+def _map_key(triangulation: Triangulation) -> str:
+    """The SHA-256 of a map, to the last bit."""
+    atlas = triangulation.orbifold.atlas
+    arrays = (triangulation.patch, triangulation.points, triangulation.transition, atlas.isometry, atlas.radius)
+    return hashlib.sha256(b"".join(array.tobytes() for array in arrays)).hexdigest()
 
 
 def _require_embedding(triangulation: Triangulation, made: str, remedy: str) -> None:

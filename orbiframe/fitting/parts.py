@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from orbiframe.components.registry import Registry
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.given_back import GivenBack
+from orbiframe.fitting.kept_maps import KeptMaps
 from orbiframe.fitting.pipeline import Result, fit, mesh_of, registry_for
 from orbiframe.fitting.report import versions
 from orbiframe.fitting.settings import configured
@@ -43,6 +44,8 @@ def fit_parts(
     config: Config | None = None,
     registry: Registry | None = None,
     progress: Progress | Literal[False] | None = None,
+    *,
+    maps: KeptMaps | None = None,
     **settings: Any,
 ) -> Parts:
     """The smooth surfaces of all components of a polyhedron, that with the most faces first.
@@ -55,15 +58,15 @@ def fit_parts(
     config = configured(config, settings)
     registry = registry_for(config) if registry is None else registry
     with told(progress) as heard:
-        return _fitted(mesh, config.checked(registry), registry, heard)
+        return _fitted(mesh, config.checked(registry), registry, heard, maps)
 
 
-def _fitted(mesh: object, config: Config, registry: Registry, progress: Progress) -> Parts:
+def _fitted(mesh: object, config: Config, registry: Registry, progress: Progress, maps: KeptMaps | None) -> Parts:
     whole = mesh_of(mesh, config, registry)
     require_closed_surface(whole, several=True)
     count = face_components(whole)[0]
     if count == 1:
-        only = fit(whole, config, registry, progress)
+        only = fit(whole, config, registry, progress, maps=maps)
         return Parts((only,), only.output, only.report)
     pieces = [component(whole, number).polyhedron for number in range(1, count + 1)]
     areas = np.array([np.linalg.norm(vector_areas(piece), axis=1).sum() for piece in pieces])
@@ -71,7 +74,7 @@ def _fitted(mesh: object, config: Config, registry: Registry, progress: Progress
     results = []
     for number, (piece, share) in enumerate(zip(pieces, shares, strict=True), start=1):
         own = _own_config(config, float(share), whole.diagonal / (piece.diagonal or 1.0))
-        results.append(fit(piece, own, registry, _numbered(progress, number, count), share=float(share)))
+        results.append(fit(piece, own, registry, _numbered(progress, number, count), share=float(share), maps=maps))
     output = disjoint_union([result.output for result in results])
     return Parts(tuple(results), output, _report(results, areas, whole.diagonal, output))
 

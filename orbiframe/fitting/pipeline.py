@@ -17,6 +17,7 @@ from orbiframe.fitting.approximation import Approximations
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.given_back import GivenBack
 from orbiframe.fitting.inspection import inspected
+from orbiframe.fitting.kept_maps import KeptMaps
 from orbiframe.fitting.limits import require_density
 from orbiframe.fitting.mapping import Mapping
 from orbiframe.fitting.report import report
@@ -51,6 +52,7 @@ def fit(
     progress: Progress | Literal[False] | None = None,
     *,
     share: float = 1.0,
+    maps: KeptMaps | None = None,
     **settings: Any,
 ) -> Result:
     """The smooth surface of a closed polyhedron: `fit("shape.off", size=500)`.
@@ -58,7 +60,8 @@ def fit(
     mesh: the name of a file; a Polyhedron; a pair (vertices, faces); or a mesh of trimesh, PyVista, meshio or Open3D,
     see `Polyhedron.of`. config: by default that of an empty file; registry: by default all that is installed. progress:
     called with the name of each stage at its start (seconds None) and at its end; None says what takes long on the
-    standard error stream, False nothing. share: of the faces that a fine picture needs.
+    standard error stream, False nothing. share: of the faces that a fine picture needs; maps: a folder from which maps
+    to X/H are taken where they are there, and in which they are kept.
 
     settings: what is to differ from the configuration: `size`, `tolerance`, `max_error`, `refine` and `fast=True` as on
     the command line; a table by its name, `basis="ps2"` or `fitter={"name": "smoothing", "fairing": 1e-3}`. Raises
@@ -68,7 +71,7 @@ def fit(
     config = configured(config, settings)
     registry = registry_for(config) if registry is None else registry
     with told(progress) as heard:
-        return _fitted(mesh, config, Stages(registry, heard), share)
+        return _fitted(mesh, config, Stages(registry, heard, maps=maps), share)
 
 
 def _fitted(mesh: object, config: Config, stages: Stages, share: float) -> Result:

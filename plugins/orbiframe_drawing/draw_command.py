@@ -83,11 +83,9 @@ def _made(args: argparse.Namespace, registry: Registry) -> _Made:
         return _Made(surface, surface.refinement.coarse)
     chosen = [f"group.method={args.group}"] if args.group else []
     sized = args.surface or args.config or any(text.startswith("basis.") for text in args.set)
-    config = Config.load(args.config, [*([] if sized else [_FEW]), *args.set, *chosen])
-    for path in config.plugins:
-        registry.add_file(path)
+    config = Config.load(args.config, [*([] if sized else [_FEW]), *args.set, *chosen], registry)
     polyhedron = oriented(_read(args, registry))
-    return _Made(fit(polyhedron, config, registry).surface, polyhedron)
+    return _Made(fit(polyhedron, config, registry, args.progress).surface, polyhedron)
 
 
 def _read(args: argparse.Namespace, registry: Registry) -> Polyhedron:

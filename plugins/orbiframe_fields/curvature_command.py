@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -37,7 +38,11 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     from orbiframe_fields.vertex_curvature import curvature_of
 
     mesh = read(args.mesh, registry)
-    found = curvature_of(mesh, fitted_surfaces(mesh, args.config, args.set, registry), registry)
+    fitted = fitted_surfaces(mesh, args.config, args.set, registry, args.progress)
+    args.progress("curvature", None)
+    start = time.perf_counter()
+    found = curvature_of(mesh, fitted, registry)
+    args.progress("curvature", time.perf_counter() - start)
     write_table(args.output, FieldTable(found.mesh, found.columns))
     print(json.dumps(_summary(found)) if args.json else "\n".join(_lines(found)))
     return 0

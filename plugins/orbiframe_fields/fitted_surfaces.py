@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -31,7 +31,13 @@ class FittedSurface(NamedTuple):
 
 
 def fitted_surfaces(
-    mesh: Polyhedron, config: Path | None, options: list[str], registry: Registry, *, least: int = _LEAST
+    mesh: Polyhedron,
+    config: Path | None,
+    options: list[str],
+    registry: Registry,
+    progress: Callable[[str, float | None], None],
+    *,
+    least: int = _LEAST,
 ) -> list[FittedSurface]:
     """The smooth surfaces of the components of a mesh, by the configuration; in C2 splines unless that says else.
 
@@ -42,10 +48,8 @@ def fitted_surfaces(
     found = []
     for vertices, part in _parts(mesh):
         size = int(np.clip(max(len(vertices), least), _LEAST, _MOST))
-        settings = Config.load(config, [_BASIS, f"basis.size={size}", *options])
-        for path in settings.plugins:
-            registry.add_file(path)
-        result = fit(part, settings, registry, _tell)
+        settings = Config.load(config, [_BASIS, f"basis.size={size}", *options], registry)
+        result = fit(part, settings, registry, progress)
         found.append(FittedSurface(result.surface, part, vertices, result.report["data"]["means"]))
     return found
 
@@ -63,9 +67,3 @@ def _parts(mesh: Polyhedron) -> list[tuple[Ints, Polyhedron]]:
         offsets = np.concatenate([[0], np.cumsum(sizes)])
         parts.append((vertices, Polyhedron.from_corners(mesh.vertices[vertices], offsets, corners)))
     return parts
-
-
-def _tell(stage: str, seconds: float | None) -> None:
-    """Stages on a terminal, each with its seconds."""
-    if sys.stderr.isatty():
-        print(f"{stage} …" if seconds is None else f"{stage:<16}{seconds:7.2f} s", file=sys.stderr)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -92,9 +93,12 @@ def mesh_field(args: argparse.Namespace, registry: Registry) -> MeshField:
         mesh = read(args.mesh, registry)
         data = read_data(args.data, mesh, args.value)
         least = _FUNCTIONS_PER_DATUM * len(data.places)
-        fitted = fitted_surfaces(mesh, args.config, args.set, registry, least=least)
+        fitted = fitted_surfaces(mesh, args.config, args.set, registry, args.progress, least=least)
         surfaces, vertices = [each.surface for each in fitted], [each.vertices for each in fitted]
+    args.progress("field", None)
+    start = time.perf_counter()
     fields = [_field(*each, data.table, fitter) for each in _shared(surfaces, data.places)]
+    args.progress("field", time.perf_counter() - start)
     return MeshField(mesh, vertices, fields, data)
 
 

@@ -4,6 +4,11 @@ from __future__ import annotations
 
 from orbiframe.plugin import Component, hookimpl
 
+_FAIRING = (
+    "how strongly ripples are damped, 0 not at all; if not given, 1e-4 for facets, 1e-4 and then 1e-6 for smooth "
+    "meshes; for least-squares 0.003 and 0.001"
+)
+
 
 @hookimpl
 def orbiframe_components() -> list[Component]:
@@ -14,17 +19,23 @@ def orbiframe_components() -> list[Component]:
             "least-squares",
             "orbiframe_fitters.least_squares:LeastSquares",
             "weighted least squares with a fairing term on the Laplacian",
+            meanings={"fairing": _FAIRING},
         ),
         Component(
             "fitter",
             "sliding",
             "orbiframe_fitters.sliding:Sliding",
             "least distance along the normals: the samples slide along the surface",
+            meanings={
+                "fairing": _FAIRING,
+                "steps": "the most steps; it stops by itself when the distance falls no more",
+            },
         ),
         Component(
             "fitter",
             "smoothing",
             "orbiframe_fitters.smoothing:Smoothing",
             "splines with a penalty all over the surface, smoothed as cross-validation says",
+            meanings={"fairing": "how much is smoothed; if not given, what cross-validation finds"},
         ),
     ]

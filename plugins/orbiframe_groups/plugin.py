@@ -20,6 +20,7 @@ def orbiframe_components() -> list[Component]:
             "lattice",
             "orbiframe_groups.lattice:lattice_group",
             "a parallelogram glued to a torus of any shape, or to a Klein bottle",
+            meanings={"first": "the vector of side 0", "second": "the vector of side 1"},
         ),
         Component(
             "group",

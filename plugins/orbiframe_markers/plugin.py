@@ -14,5 +14,6 @@ def orbiframe_components() -> list[Component]:
             "tree-cotree",
             "orbiframe_markers.tree_cotree:tree_cotree",
             "short loops by a tree of shortest paths and the dual tree that leaves the shortest loops",
+            meanings={"bases": "how many base points are tried; the one with the shortest loops is kept"},
         )
     ]

@@ -33,7 +33,12 @@ def orbiframe_components() -> list[Component]:
     """One reader and one writer for all these formats; as `format` they serve every suffix that meshio knows."""
     return [
         Component(
-            "reader", "meshio", "orbiframe_meshio.reader:read", "AVS-UCD, Netgen, Permas, SU2, UGRID", suffixes=READ
+            "reader",
+            "meshio",
+            "orbiframe_meshio.reader:read",
+            "AVS-UCD, Netgen, Permas, SU2, UGRID",
+            suffixes=READ,
+            meanings={"seconds": "the time that a file may take"},
         ),
         Component(
             "writer",

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 import zipfile
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 from pathlib import Path, PurePosixPath
 
 from orbiframe import FormatError, PluginError, Polyhedron, Registry, read
@@ -94,10 +96,16 @@ def _require_room(path: Path, left: int) -> None:
         raise FormatError(f"{path}: the file swells beyond {GROWTH} times its size when unpacked; it is not read")
 
 
+@lru_cache(maxsize=2)
+def _registry(_restriction: str | None) -> Registry:
+    """What is installed, looked up once: that takes the longer the more packages there are."""
+    return Registry.discover()
+
+
 def _read(path: Path, place: Path) -> Polyhedron:
     """The polyhedron of the unpacked file; errors name the packed one, which the user knows."""
     try:
         # The gate looks at the packed file again, and knows what to allow.
-        return read(place, Registry.discover(), degenerate=True)
+        return read(place, _registry(os.environ.get("ORBIFRAME_PLUGINS")), degenerate=True)
     except (FormatError, PluginError) as error:
         raise type(error)(str(error).replace(str(place), str(path))) from error

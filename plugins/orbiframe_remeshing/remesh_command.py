@@ -84,10 +84,8 @@ def _surfaces(args: argparse.Namespace, registry: Registry) -> list[OrbifoldSurf
             raise UsageError(f"{args.mesh} is a finished surface; --config, --set and --size belong to meshes")
         return [load_surface(args.mesh, registry)]
     size = [] if args.size is None else [f"basis.size={args.size}"]
-    config = Config.load(args.config, [*args.set, *size])
-    for path in config.plugins:
-        registry.add_file(path)
-    found = fit_parts(args.mesh, config.checked(registry), registry, args.progress)
+    config = Config.load(args.config, [*args.set, *size], registry)
+    found = fit_parts(args.mesh, config, registry, args.progress)
     return [result.surface for result in found.results]
 
 

@@ -65,7 +65,7 @@ def test_options_with_a_name_of_their_own_win_over_set(orbiframe, cube, tmp_path
     """Whatever their order on the command line is."""
     asked = []
 
-    def fit(mesh, config, *rest):
+    def fit(mesh, config, *rest, **more):
         asked.append((config.basis.name, config.basis.options["size"], config.output.refine))
         raise MapError("enough")
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import pickle
 import sys
 from pathlib import Path
 from textwrap import dedent
@@ -228,3 +230,26 @@ def test_a_refused_plugin_leaves_no_trace():
     assert registry.declarations() == []
     registry.register("bad", Declares(Component("basis", "a", "a:b", "")))
     assert len(registry.declarations()) == 1
+
+
+def test_a_registry_can_be_pickled_with_its_plugins_and_files(tmp_path, install):
+    install("pickled_plugin", PLUGIN.format(name="wavelet", target="math:hypot"))
+    file = tmp_path / "own_basis.py"
+    file.write_text(PLUGIN.format(name="own", target="own_basis:orbiframe_components"))
+    registry = Registry.discover(files=[file])
+    registry.broken.append(("bad", "it is broken"))
+    found = pickle.loads(pickle.dumps(registry))
+    assert found.declarations() == registry.declarations()
+    assert found.broken == registry.broken
+    assert found.load("basis", "wavelet") is math.hypot
+    assert found.load("basis", "own")()[0].name == "own"
+    assert pickle.loads(pickle.dumps(found)).declarations() == registry.declarations()
+
+
+def test_a_file_is_added_once(tmp_path):
+    file = tmp_path / "twice_basis.py"
+    file.write_text(PLUGIN.format(name="own", target="math:hypot"))
+    registry = Registry()
+    registry.add_file(file)
+    registry.add_file(file)
+    assert len(registry.components("basis")) == 1

@@ -40,7 +40,11 @@ def column(page: Path, heading: str) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    "command", ["fit", "info", "convert", "group", "draw", "curvature", "field", "plugins", "warm-up"]
+    "command",
+    [
+        *("fit", "info", "convert", "group", "draw", "curvature", "field"),
+        *("run", "report", "compare", "config", "plugins", "warm-up"),
+    ],
 )
 def test_every_option_of_a_command_is_in_its_table(command, registry):
     parser = argparse.ArgumentParser()

@@ -87,7 +87,7 @@ def test_options_reach_the_component(tmp_path, registry):
     [output]
     refine = 3
     """
-    config = Config.load(written(tmp_path, text), ["basis.mode=hard", "output.tolerance=1e-3"]).checked(registry)
+    config = Config.parsed(written(tmp_path, text), ["basis.mode=hard", "output.tolerance=1e-3"]).checked(registry)
     basis = config.component("basis", registry)("X/H", "T")
     assert basis.given == ("X/H", "T", 7, 2.0, "hard", (3, 4.0))
     assert isinstance(basis.given[3], float)
@@ -97,8 +97,8 @@ def test_options_reach_the_component(tmp_path, registry):
 
 def test_an_override_wins_over_the_file_and_the_last_over_the_first(tmp_path):
     path = written(tmp_path, "[basis]\nsize = 1")
-    assert Config.load(path).basis.options == {"size": 1}
-    assert Config.load(path, ["basis.size=2", "basis.size=3"]).basis.options == {"size": 3}
+    assert Config.parsed(path).basis.options == {"size": 1}
+    assert Config.parsed(path, ["basis.size=2", "basis.size=3"]).basis.options == {"size": 3}
 
 
 @pytest.mark.parametrize(
@@ -115,7 +115,7 @@ def test_an_override_wins_over_the_file_and_the_last_over_the_first(tmp_path):
     ],
 )
 def test_override_values_are_toml_or_else_text(text, value):
-    assert Config.load(None, [f"basis.key={text}"]).basis.options == {"key": value}
+    assert Config.parsed(None, [f"basis.key={text}"]).basis.options == {"key": value}
 
 
 @pytest.mark.parametrize(
@@ -148,7 +148,7 @@ def test_override_values_are_toml_or_else_text(text, value):
 )
 def test_what_is_wrong_is_named_with_its_place(tmp_path, registry, text, said):
     with pytest.raises(ConfigError) as caught:
-        Config.load(written(tmp_path, text)).checked(registry)
+        Config.parsed(written(tmp_path, text)).checked(registry)
     for words in said:
         assert words in str(caught.value)
 
@@ -156,14 +156,14 @@ def test_what_is_wrong_is_named_with_its_place(tmp_path, registry, text, said):
 @pytest.mark.parametrize("text", ["size=3", "basis.size", "basis=3", "=3", ".size=3", "basis.=3"])
 def test_an_override_has_a_table_and_a_key(text):
     with pytest.raises(ConfigError, match=r"TABLE\.KEY=VALUE"):
-        Config.load(None, [text])
+        Config.parsed(None, [text])
 
 
 def test_an_override_is_the_place_of_its_key(registry):
     with pytest.raises(ConfigError, match=r"^--set basis.size=many: basis.size = 'many'"):
-        Config.load(None, ["basis.size=many"]).checked(registry)
+        Config.parsed(None, ["basis.size=many"]).checked(registry)
     with pytest.raises(ConfigError, match=r"^--set bais.size=1: no table named 'bais'.*Did you mean 'basis'"):
-        Config.load(None, ["bais.size=1"])
+        Config.parsed(None, ["bais.size=1"])
 
 
 def test_an_open_map_takes_the_options_of_any_parametrizer_that_can_be_loaded(registry):
@@ -182,7 +182,7 @@ def test_other_options_leave_the_old_configuration_alone(registry):
 
 def test_files_that_cannot_be_read(tmp_path):
     with pytest.raises(ConfigError, match=r"absent\.toml cannot be read"):
-        Config.load(tmp_path / "absent.toml")
+        Config.parsed(tmp_path / "absent.toml")
     bad = tmp_path / "latin.toml"
     bad.write_bytes(b"x = '\xe9'")
     with pytest.raises(ConfigError, match=r"latin\.toml cannot be read"):
@@ -192,7 +192,7 @@ def test_files_that_cannot_be_read(tmp_path):
 def test_a_byte_order_mark_is_no_harm(tmp_path):
     path = tmp_path / "bom.toml"
     path.write_bytes(b"\xef\xbb\xbf[basis]\nsize = 4\n")
-    assert Config.load(path).basis.options == {"size": 4}
+    assert Config.parsed(path).basis.options == {"size": 4}
 
 
 def test_options_are_read_off_the_signature():

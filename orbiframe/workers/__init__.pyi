@@ -1,0 +1,5 @@
+"""The public names of orbiframe.workers, each with the module it lives in."""
+
+from .memory import peak_memory as peak_memory, reset_peak as reset_peak, resident_memory as resident_memory
+from .pool import Outcome as Outcome, processors as processors, work as work
+from .worker_process import COMPILING as COMPILING
