@@ -62,7 +62,7 @@ def _add_files(config: Path | None, registry: Registry) -> None:
         return
     from orbiframe.fitting.config import Config
 
-    for path in Config.load(config).plugins:
+    for path in Config.parsed(config).plugins:
         registry.add_file(path)
 
 

@@ -31,7 +31,8 @@ TABLE_MEANINGS = {
 }
 SELECTOR_MEANINGS = {
     "mesh": "name of a reader; auto takes the one of the suffix",
-    "geometry": "name of a geometry; auto takes s2, e2 or h2 by the sign of the Euler characteristic",
+    "geometry": "name of a geometry; auto takes s2, e2 or h2 by the sign of the Euler characteristic, which another "
+    "one must have as its curvature",
     "group": "where the group comes from; with mesh, the one that fits the mesh is found; else the name of a group",
     "marking": "name of a marker; auto takes tree-cotree",
     "map": "name of a parametrizer; auto takes sphere for χ > 0 and harmonic for χ ≤ 0, or equivariant if the "
@@ -49,8 +50,8 @@ _RESULT_MEANINGS = {
     "data.noise": "root mean square error of each coordinate of the vertices of a smooth mesh, relative to the "
     "diagonal of the bounding box; if not given, the fairing is found from the vertices by cross-"
     "validation",
-    "data.creases": "edges of the mesh that bend by so many degrees or more stay sharp; if not given, the surface is smooth "
-    "everywhere",
+    "data.creases": "edges of the mesh that bend by so many degrees or more stay sharp; if not given, the surface is "
+    "smooth everywhere",
     "output.refine": "every triangle of the input becomes refine² triangles; if not given, the refined mesh is "
     "cut, about 40 000 triangles in all, of even size",
     "output.tolerance": "largest root mean square error, relative to the diagonal of the bounding box; if given, "

@@ -14,7 +14,7 @@ from orbiframe.testing.lab import Lab
 Component = Callable[[argparse.ArgumentParser], Any]
 
 # The options that every command has.
-_COMMON = ("--help", "--debug")
+_COMMON = ("--help", "--debug", "--progress")
 # What orbiframe itself writes into the arguments of every command.
 RESERVED = ("command", "debug", "progress")
 
@@ -72,6 +72,7 @@ def _configured(component: Component) -> argparse.ArgumentParser:
     """A parser as orbiframe makes it, with the arguments of the command."""
     parser = argparse.ArgumentParser("orbiframe command")
     parser.add_argument("--debug", action="store_true", default=argparse.SUPPRESS, help="show the traceback")
+    parser.add_argument("--progress", default=argparse.SUPPRESS, help="how to tell what goes on")
     component(parser)
     return parser
 

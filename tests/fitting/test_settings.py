@@ -36,7 +36,7 @@ def test_a_keyword_is_a_key(settings, overrides):
 def test_keywords_change_a_configuration_and_keep_the_rest(tmp_path):
     file = tmp_path / "some.toml"
     file.write_text('plugins = ["mine.py"]\n[basis]\nname = "ps2"\nsize = 100\n[output]\nrefine = 2\n')
-    config = configured(Config.load(file), {"size": 50})
+    config = configured(Config.parsed(file), {"size": 50})
     assert config.plugins == (tmp_path / "mine.py",)
     assert config.basis.name == "ps2"
     assert config.basis.options == {"size": 50}
