@@ -5,7 +5,7 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: demo warm-up test quick lint mutants constraints clean
+.PHONY: demo warm-up test quick lowest fresh lint mutants constraints clean
 
 demo: $(VENV)/warm  ## one smooth surface from a mesh of genus 2
 	$(BIN)/orbiframe fit datasets/plate_genus2.off -o plate_genus2_smooth.ply
@@ -17,6 +17,15 @@ test: $(VENV)/developer  ## all tests, with Open3D, on all cores
 
 quick: $(VENV)/developer  ## the tests that take no time, on all cores
 	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
+
+lowest: $(VENV)/developer  ## the quick tests with the lowest versions that pyproject.toml allows
+	$(BIN)/python .ci/lowest.py testing > $(VENV)/lowest.txt
+	$(PYTHON) -m venv $(VENV)-lowest
+	$(VENV)-lowest/bin/pip install --quiet --constraint $(VENV)/lowest.txt --editable ".[testing]" mpmath import-linter hatchling
+	$(VENV)-lowest/bin/python -m pytest --numprocesses auto --dist worksteal
+
+fresh:  ## a fresh environment for each interpreter in PYTHONS: installed from the sdist, and used
+	.ci/fresh $(or $(PYTHONS),$(PYTHON))
 
 lint: $(VENV)/developer  ## style, types, and who imports whom
 	$(BIN)/ruff check .
@@ -31,7 +40,7 @@ constraints: $(VENV)/developer  ## the versions in use become the versions to in
 	$(BIN)/python -m pip freeze --exclude-editable > constraints.txt
 
 clean:
-	rm -rf $(VENV)
+	rm -rf $(VENV) $(VENV)-lowest
 
 $(VENV)/python:
 	$(PYTHON) -m venv $(VENV)

@@ -23,6 +23,9 @@ KINDS = (
     "command",
 )
 
+# What a configuration says where the pipeline is to choose the component, or to take none: names of no component.
+OPEN_NAMES = ("auto", "mesh", "none")
+
 # The marker of a mesh where none is named.
 DEFAULT_MARKER = "tree-cotree"
 

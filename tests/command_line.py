@@ -36,10 +36,11 @@ class Ran(NamedTuple):
 
 @pytest.fixture
 def orbiframe(capsys, monkeypatch) -> Callable[..., Ran]:
-    """Run the command line in this process; nothing is said of compilation, which depends on what ran before."""
+    """Run the command line in this process; nothing is said of compilation and of long work, which depend on others."""
 
     def run(*arguments: object) -> Ran:
         monkeypatch.setattr(program, "compilation_told", lambda **_: nullcontext())
+        monkeypatch.setattr(program, "patient", lambda *_, **__: nullcontext())
         capsys.readouterr()
         status = program.main([str(argument) for argument in arguments])
         return Ran(status, *capsys.readouterr())

@@ -9,10 +9,10 @@ from orbiframe_studies.study_keys import TABLE_MEANINGS as STUDY_MEANINGS, keys 
 
 from orbiframe import Registry
 from orbiframe.fitting import ConfigKey, config_keys
-from orbiframe.fitting.config import OPEN_NAMES, STEPS
+from orbiframe.fitting.config import STEPS
 from orbiframe.fitting.keys import TABLE_MEANINGS
 from orbiframe.fitting.mapping import PARAMETRIZER
-from orbiframe.plugin import DEFAULT_MARKER
+from orbiframe.plugin import DEFAULT_MARKER, OPEN_NAMES
 
 PAGE = Path(__file__).with_name("config.md")
 
@@ -21,13 +21,19 @@ INTRO = """# Configuration
 *Made by [make_config.py](make_config.py) from the explanations that the components carry: `orbiframe config init`
 writes them as comments of a file, `orbiframe config schema` as a schema for editors.*
 
-A configuration is a TOML file with nine tables, all of them optional, and a list of plugin files. The options of
+A configuration is a TOML file with ten tables, all of them optional, and a list of plugin files. The options of
 a table are those of the component that it names; `orbiframe plugins --options` prints them. On the command
 line, `--set TABLE.KEY=VALUE` sets one; VALUE is read as TOML, and as text where it is none. In Python,
 `Config.load(path, {"basis.size": 300})` does. An unknown key or name is refused at once, with the nearest one.
 
 ```toml title="all.toml"
 plugins = []            # Python files with components, relative to this file
+
+[mesh]
+format = "auto"         # a reader; auto: by the suffix
+
+[geometry]
+name = "auto"           # the plane X; auto: by the Euler characteristic
 
 [group]
 method = "mesh"         # found from the mesh

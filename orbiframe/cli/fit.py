@@ -229,25 +229,15 @@ def _export_options(args: argparse.Namespace, config: Config, registry: Registry
     _require_known(args, known)
     if known is None:
         return None
-    exact = args.exact or _kept_exactly(args, config, known)
     options: dict[str, object] = {"unit": args.unit or "mm", "name": args.mesh.stem}
-    if "faces" in known and not exact:
+    asked = args.faces is not None or args.export_tolerance is not None
+    if "faces" in known and not args.exact and (config.data.creases is None or asked or "exact" not in known):
+        if config.data.creases is not None:
+            raise UsageError("few faces round creases off; write the exact patches, to part.step with --exact")
         options |= {"exact": False, "conforming": args.conforming, **_faces(args)}
     elif not _piecewise(config, registry):
         return None
     return {name: value for name, value in options.items() if name in known}
-
-
-def _kept_exactly(args: argparse.Namespace, config: Config, known: Collection[str]) -> bool:
-    """Whether exact patches are written because of creases, which faces near the surface would round off."""
-    if config.data.creases is None:
-        return False
-    if args.faces is not None or args.export_tolerance is not None or "exact" not in known:
-        raise UsageError(
-            f"{args.output}: faces near the surface round its creases off; write the exact patches, as part.step, "
-            "without --faces and --export-tolerance"
-        )
-    return True
 
 
 def _require_known(args: argparse.Namespace, known: Collection[str] | None) -> None:

@@ -7,15 +7,18 @@ import os
 import sys
 import traceback
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from itertools import pairwise
 
 from orbiframe.cli import plugin as commands
+from orbiframe.cli.blame import named
+from orbiframe.cli.patience import patient
 from orbiframe.cli.progress import MODES, Progress, compilation_told
 from orbiframe.cli.speech import any_letter, fill_closed_streams, said_to_programs, say, silence
 from orbiframe.components.registry import Registry
-from orbiframe.errors import OrbiframeError, UsageError
+from orbiframe.errors import OrbiframeError, PluginError, UsageError
 
 INTERRUPTED = 130
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -31,7 +34,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = sys.argv[1:] if argv is None else list(argv)
     _fix_threads()
     fill_closed_streams()
-    with warnings.catch_warnings(), any_letter(), said_to_programs(_for_programs(arguments)):
+    with warnings.catch_warnings(), any_letter(), said_to_programs(_mode(arguments) == "json"):
         debug = "--debug" in arguments
         _show_warnings_of_users(debug)
         try:
@@ -43,10 +46,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _flushed(status)
 
 
-def _for_programs(arguments: Sequence[str]) -> bool:
-    """Whether the standard error stream is to hold lines of JSON, which wrong arguments too are told in."""
-    after = dict(pairwise(arguments))
-    return "--progress=json" in arguments or after.get("--progress") == "json"
+def _mode(arguments: Sequence[str]) -> str:
+    """How progress is to be told, as far as the words say it: with JSON wrong arguments are told in it too."""
+    joined = [word.partition("=")[2] for word in arguments if word.startswith("--progress=")]
+    return joined[-1] if joined else dict(pairwise(arguments)).get("--progress", "auto")
 
 
 def _fix_threads() -> None:
@@ -61,15 +64,38 @@ def _fix_threads() -> None:
 def _run(arguments: list[str]) -> int:
     registry = Registry.discover()
     registry.register("commands", commands)
-    args = parsed(arguments, registry)
-    json = args.progress.mode == "json"
-    args.progress.watch(args.command)
+    for plugin, seconds in registry.slow:
+        say(f"the plugin '{plugin}' took {seconds:.1f} s to declare itself; it should import nothing heavy for that")
+    quiet = "--quiet" in arguments or _mode(arguments) != "auto"
     try:
-        with compilation_told(quiet=args.progress.mode == "none", json=json):
-            status: int = args.run(args, registry)
+        with patient(_command(arguments) or "orbiframe", quiet=quiet):
+            args = parsed(arguments, registry)
+            with _told(args.progress, args.command):
+                return _status(args.run(args, registry), args, registry)
+    except Exception as error:
+        told = named(error, registry)
+        if told is error:
+            raise
+        raise told from error
+
+
+@contextmanager
+def _told(progress: Progress, command: str) -> Iterator[None]:
+    """Meanwhile a program hears that the command goes on, and everybody that functions are being compiled."""
+    progress.watch(command)
+    try:
+        with compilation_told(quiet=progress.mode == "none", json=progress.mode == "json"):
+            yield
     finally:
-        args.progress.close()
-    return status
+        progress.close()
+
+
+def _status(found: object, args: argparse.Namespace, registry: Registry) -> int:
+    """What a command gives back, if it is an exit status. Raises PluginError otherwise."""
+    if not isinstance(found, int):
+        title = registry.title(registry.component("command", args.command))
+        raise PluginError(f"{title} gives {found!r}; its function `run` must return 0, 1 or 2")
+    return found
 
 
 def parsed(arguments: list[str], registry: Registry) -> argparse.Namespace:
@@ -78,7 +104,7 @@ def parsed(arguments: list[str], registry: Registry) -> argparse.Namespace:
     What takes long is told to `args.progress`, a stage at a time: (name, None), then (name, seconds).
     Raises UsageError for an unknown command and SystemExit for wrong arguments.
     """
-    chosen = next((word for word in arguments if not word.startswith("-")), None)
+    chosen = _command(arguments)
     parser = _parser(registry, chosen)
     if chosen is not None:
         registry.component("command", chosen)
@@ -89,13 +115,22 @@ def parsed(arguments: list[str], registry: Registry) -> argparse.Namespace:
     return args
 
 
+def _command(arguments: list[str]) -> str | None:
+    return next((word for word in arguments if not word.startswith("-")), None)
+
+
 def _print_help(parser: argparse.ArgumentParser) -> int:
     parser.print_help()
     return 0
 
 
-def _parser(registry: Registry, chosen: str | None) -> argparse.ArgumentParser:
-    """The parser of all commands; only the chosen one is imported and has its arguments."""
+def whole_parser(registry: Registry) -> argparse.ArgumentParser:
+    """The parser of all commands with all their arguments; commands that cannot be imported have none."""
+    return _parser(registry, None, whole=True)
+
+
+def _parser(registry: Registry, chosen: str | None, *, whole: bool = False) -> argparse.ArgumentParser:
+    """The parser of all commands; only the chosen one is imported and has its arguments, or all."""
     parser = argparse.ArgumentParser("orbiframe", description=_description(), epilog=EPILOG)
     parser.add_argument("--version", action="version", version=f"orbiframe {version('orbiframe')}")
     _add_common(parser, False, "auto")
@@ -105,6 +140,9 @@ def _parser(registry: Registry, chosen: str | None) -> argparse.ArgumentParser:
         _add_common(sub, argparse.SUPPRESS, argparse.SUPPRESS)
         if component.name == chosen:
             registry.load("command", component.name)(sub)
+        elif whole:
+            with suppress(PluginError):
+                registry.load("command", component.name)(sub)
     return parser
 
 

@@ -14,6 +14,14 @@ def orbiframe_components() -> list[Component]:
         Component("command", "convert", "orbiframe.cli.convert:configure", "write a mesh in another format"),
         Component("command", "warm-up", "orbiframe.cli.warm_up:configure", "compile what the other commands need"),
         Component(
+            "command",
+            "completion",
+            "orbiframe.cli.completion:configure",
+            "print what a shell needs to complete commands",
+            extra="orbiframe[completion]",
+        ),
+        Component("command", "new", "orbiframe.cli.new:configure", "write the beginning of a plugin"),
+        Component(
             "command", "plugins", "orbiframe.cli.plugins:configure", "list the installed components or check one"
         ),
     ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import time
 from contextlib import suppress
 from typing import TextIO
 
@@ -12,10 +13,16 @@ class StatusLine:
 
     def __init__(self, stream: TextIO) -> None:
         self._stream, self._text, self._remark, self._width = stream, "", "", 0
+        self.began = self.written = 0.0
+
+    @property
+    def text(self) -> str:
+        """What the line shows, without the remark; shown from `began` on, and `written` last then (monotonic times)."""
+        return self._text
 
     def show(self, text: str) -> None:
         """Write another text, without a remark."""
-        self._text, self._remark = text, ""
+        self._text, self._remark, self.began = text, "", time.monotonic()
         self._write()
 
     def remark(self, remark: str) -> None:
@@ -33,7 +40,7 @@ class StatusLine:
         room = shutil.get_terminal_size().columns - 1
         line = " ".join(filter(None, [self._text, self._remark]))[:room]
         self._print(f"\r{line:<{min(self._width, room)}}" + ("" if line else "\r"))
-        self._width = len(line)
+        self._width, self.written = len(line), time.monotonic()
 
     def _print(self, text: str) -> None:
         with suppress(OSError, ValueError):  # a terminal that has gone costs no result

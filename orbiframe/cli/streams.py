@@ -37,9 +37,8 @@ def choice(kind: str, name: str | None, registry: Registry) -> Choice:
     for component in registry.components(kind):
         if name == component.name:
             return Choice(name, component.suffixes[0] if len(component.suffixes) == 1 else None)
-    for component in registry.components(kind):
-        if suffix in component.suffixes:
-            return Choice(component.name, suffix)
+    for component in registry.for_suffix(kind, suffix):
+        return Choice(component.name, suffix)
     return Choice(registry.component(kind, name).name)
 
 

@@ -8,15 +8,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from orbiframe.components.options import checked_options
+from orbiframe.components.registry import Registry
 from orbiframe.components.shown_text import shown
 from orbiframe.components.suggestion import did_you_mean
-from orbiframe.errors import FitError, FormatError, PluginError
+from orbiframe.errors import FitError, FormatError, PluginError, TopologyError, UsageError
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.plugin import Component
 
 if TYPE_CHECKING:
     from orbiframe.surfaces.curved_triangles import CurvedMesh
     from orbiframe.surfaces.surface import OrbifoldSurface
+from orbiframe.files.datasets import located
 from orbiframe.files.outputs import output, require_output
 from orbiframe.files.places import SIZE_LIMIT, require_readable
 from orbiframe.files.soundness import require_sound
@@ -31,13 +33,16 @@ class Components(Protocol):
     def component(self, kind: str, name: str) -> Component:
         """The component of this name."""
 
+    def for_suffix(self, kind: str, suffix: str) -> list[Component]:
+        """The components of a kind for a file suffix."""
+
     def load(self, kind: str, name: str) -> Callable[..., object]:
         """What the component names, imported now."""
 
 
 def read(
-    path: Path,
-    registry: Components,
+    path: str | Path,
+    registry: Components | None = None,
     *,
     format: str | None = None,
     options: Mapping[str, Any] | None = None,
@@ -46,38 +51,41 @@ def read(
 ) -> Polyhedron:
     """The polyhedron of a file, by the reader of its suffix or by the one that `format` names.
 
-    options: those of the reader; degenerate: let faces of fewer than three different vertices pass, to be described or
-    repaired.
+    path: or "dataset:torus" and the like, see `orbiframe.files.located`; registry: by default all that is installed;
+    options: those of the reader; degenerate: let faces of fewer than three
+    different vertices pass, to be described or repaired.
 
     The file must be a regular one of 1 to size_limit bytes. Raises FormatError, naming the file, for anything that is
     wrong with it or with the polyhedron in it: a coordinate that is not finite, an index out of range, a face of fewer
     than three different vertices, no face at all. Whatever a reader raises, the end of the process included, becomes a
     FormatError. Raises UsageError for an unknown format or option, PluginError where the reader cannot be imported.
     """
-    path = Path(path)
+    path = located(path)
     require_readable(path, size_limit)
-    reader = _component(path, registry, "reader", format, options)
+    reader = _component(path, _registry(registry), "reader", format, options)
     return require_sound(_guarded(path, "reading", reader, path), path, degenerate=degenerate)
 
 
 def write(
-    path: Path,
-    polyhedron: Polyhedron,
-    registry: Components,
+    path: str | Path,
+    polyhedron: object,
+    registry: Components | None = None,
     *,
     format: str | None = None,
     options: Mapping[str, Any] | None = None,
 ) -> None:
     """Write a polyhedron, by the writer of the file's suffix or by the one that `format` names, with its options.
 
+    polyhedron: or what `Polyhedron.of` takes; registry: by default all that is installed.
+
     The file appears whole or not at all: it is made in a folder beside its place and then moved. Raises FormatError,
     naming the file, where the polyhedron or the place is unfit or the writer fails; UsageError and PluginError as in
     `read`.
     """
     path = Path(path)
-    require_sound(polyhedron, path)
+    mesh = require_sound(_mesh(polyhedron, path), path)
     require_output(path)
-    _write_whole(path, _component(path, registry, "writer", format, options), polyhedron)
+    _write_whole(path, _component(path, _registry(registry), "writer", format, options), mesh)
 
 
 def export(
@@ -108,6 +116,18 @@ def exports(path: Path, registry: Components) -> bool:
     return any(path.suffix.lower() in c.suffixes for c in registry.components("exporter"))
 
 
+def _mesh(given: object, path: Path) -> Polyhedron:
+    """The polyhedron of what is to be written. Raises FormatError, naming the file, where it is no mesh."""
+    try:
+        return Polyhedron.of(given)
+    except (TopologyError, UsageError) as error:
+        raise FormatError(f"{path}: {error}") from error
+
+
+def _registry(given: Components | None) -> Components:
+    return Registry.discover() if given is None else given
+
+
 # ---- which component ----------------------------------------------------------------------------------------------
 
 
@@ -118,9 +138,10 @@ def component_name(path: Path, registry: Components, kind: str, format: str | No
     format.
     """
     if format is not None:
-        return registry.component(kind, format).name
-    suffix = path.suffix.lower()
-    names = [c.name for c in registry.components(kind) if suffix in c.suffixes]
+        registry.component(kind, format)
+        return format
+    suffix = located(path).suffix.lower()
+    names = [c.name for c in registry.for_suffix(kind, suffix)]
     if not names:
         raise FormatError(_unknown(path, suffix, kind, registry))
     if len(names) > 1:

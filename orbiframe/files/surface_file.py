@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from orbiframe.components.geometry_names import geometry_name
 from orbiframe.components.options import checked_options
+from orbiframe.components.registry import Registry
 from orbiframe.errors import FormatError, OrbiframeError
 from orbiframe.files.array_archive import ArrayArchive, Shape
 from orbiframe.files.gate import Components
@@ -106,8 +107,10 @@ def save_surface(surface: OrbifoldSurface, path: Path) -> None:
         np.savez_compressed(file, **{"about": np.array(text), **arrays})  # type: ignore[arg-type]
 
 
-def load_surface(path: Path, registry: Components) -> OrbifoldSurface:
+def load_surface(path: str | Path, registry: Components | None = None) -> OrbifoldSurface:
     """The surface of a file that `save_surface` wrote; evaluates to the same bits with the same versions.
+
+    registry: by default all that is installed.
 
     Everything that later steps rely on is checked before anything is computed: shapes and types before memory is
     taken, then the laws of meshes, refinements, atlases and maps (see `surface_laws`), then the check sums. Raises
@@ -118,7 +121,7 @@ def load_surface(path: Path, registry: Components) -> OrbifoldSurface:
     require_readable(path)
     try:
         arrays, about = _read(path)
-        return _surface(arrays, about, registry, path)
+        return _surface(arrays, about, Registry.discover() if registry is None else registry, path)
     except BrokenLaw as error:
         raise FormatError(f"{path}: {error}; the file was changed or damaged: save the surface again") from error
 
@@ -195,8 +198,10 @@ def _surface(arrays: Arrays, about: About, registry: Components, path: Path) -> 
     make = registry.load("basis", about["basis"])
     options = checked_options(make, about["options"], "basis", {})
     chi = about["euler_characteristic"]
-    plane = geometry_name(chi)
-    require(about["geometry"] == plane, "about", f"a surface of Euler characteristic {chi} is made of {plane}")
+    sign = (chi > 0) - (chi < 0)
+    require(
+        geometry.curvature == sign, "about", f"a surface of Euler characteristic {chi} is made of {geometry_name(chi)}"
+    )
     coarse, fine = (require_mesh(arrays, prefix, about) for prefix in ("coarse", "fine"))
     coarse = replace(coarse, unit=about.get("unit"))
     refinement = require_refinement(arrays, coarse, fine)

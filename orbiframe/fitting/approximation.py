@@ -12,6 +12,7 @@ from orbiframe.components.options import options_of
 from orbiframe.errors import FitError
 from orbiframe.fitting.accuracy import Accuracy, accuracy_of
 from orbiframe.fitting.config import Config
+from orbiframe.fitting.made import made, made_coefficients
 from orbiframe.fitting.mapping import Mapped, Mapping
 from orbiframe.fitting.meaning import Meaning, meaning_of
 from orbiframe.fitting.size import LEAST_SIZE, default_size, size_needed
@@ -76,7 +77,7 @@ class Approximations:
             if meaning.smooth and self.config.data.lift and self.config.data.creases is None:
                 mapped = self._lifted(mapped, basis, meaning)
                 basis = self._basis(mapped, size)
-            fitter = self.config.component("fitter", self.stages.registry)()
+            fitter = self._fitter()
             samples, surface = self._surface(mapped, basis, meaning, fitter)
             accuracy = self.stages("error", accuracy_of, surface)
         except FitError as error:
@@ -120,9 +121,13 @@ class Approximations:
         return creased
 
     def _basis(self, mapped: Mapped, size: int) -> Basis:
-        made = self._sized(size).component("basis", self.stages.registry)
-        basis: Basis = self.stages("basis", made, mapped.triangulation.orbifold, mapped.triangulation)
-        return basis
+        make = self._sized(size).component("basis", self.stages.registry)
+        found = self.stages("basis", make, mapped.triangulation.orbifold, mapped.triangulation)
+        return made(self.stages.registry, "basis", self.config.basis.name, found, Basis)  # type: ignore[type-abstract]
+
+    def _fitter(self) -> Fitter:
+        found = self.config.component("fitter", self.stages.registry)()
+        return made(self.stages.registry, "fitter", self.config.fitter.name, found, Fitter)  # type: ignore[type-abstract]
 
     def _sized(self, size: int) -> Config:
         """The configuration with this size, where the basis has an option of that name."""
@@ -143,7 +148,10 @@ class Approximations:
     ) -> tuple[Samples, OrbifoldSurface]:
         triangulation, refinement, noise = mapped.triangulation, mapped.refinement, self.config.data.noise
         samples = self.stages("samples", meaning.samples, triangulation, refinement, basis.size, noise)
-        coefficients = self.stages("fit", fitter.fit, basis, samples)
+        found = self.stages("fit", fitter.fit, basis, samples)
+        coefficients = made_coefficients(
+            self.stages.registry, self.config.fitter.name, found, (basis.size, samples.values.shape[1])
+        )
         recipe = self.config.basis.name, self._options(basis.size)
         return samples, OrbifoldSurface(triangulation, refinement, basis, coefficients, np.zeros(3), 1.0, *recipe)
 

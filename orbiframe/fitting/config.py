@@ -16,6 +16,7 @@ from orbiframe.components.registry import Registry
 from orbiframe.errors import ConfigError, PluginError, UsageError
 from orbiframe.fitting.config_text import Overrides, override_items, read_tables, require_table
 from orbiframe.fitting.limits import require_size
+from orbiframe.plugin import OPEN_NAMES
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,11 +67,10 @@ class Data:
 # The basis if nothing is said and creases are kept.
 CREASED_BASIS = "clough-tocher"
 
-OPEN_NAMES = ("auto", "mesh", "none")
-
 # Table of the configuration: the kind of its component, the key that names it, and the name if nothing is said.
 STEPS = {
     "mesh": ("reader", "format", "auto"),
+    "geometry": ("geometry", "name", "auto"),
     "group": ("group", "method", "mesh"),
     "marking": ("marker", "method", "auto"),
     "map": ("parametrizer", "method", "auto"),
@@ -85,9 +85,10 @@ TABLES = (*STEPS, "data", "output")
 class Config:
     """A fit in words: a step for each of the tables of `STEPS`, the output, what the mesh means, plugin files.
 
-    mesh: the reader, "auto" by the file suffix; group: "mesh" takes the group from the mesh; marking: cuts the mesh
-    open for a named group; map: "auto" takes the parametrizer that fits the geometry and the group; shape: changes
-    the map so that faces become regular, "none" leaves it as it is; basis; fitter.
+    mesh: the reader, "auto" by the file suffix; geometry: the plane X, "auto" by the Euler characteristic; group:
+    "mesh" takes the group from the mesh; marking: cuts the mesh open for a named group; map: "auto" takes the
+    parametrizer that fits the geometry and the group; shape: changes the map so that faces become regular, "none"
+    leaves it as it is; basis; fitter.
     places: where each "table.key" was written, for error messages. NAMES: of all tables.
     """
 
@@ -145,6 +146,11 @@ class Config:
     def mesh(self) -> Step:
         """The reader."""
         return self.steps["mesh"]
+
+    @property
+    def geometry(self) -> Step:
+        """The geometry."""
+        return self.steps["geometry"]
 
     @property
     def group(self) -> Step:

@@ -12,11 +12,12 @@ from typing import Any
 from orbiframe.components.options import Option, options_of
 from orbiframe.components.registry import Registry, resolve
 from orbiframe.errors import PluginError
-from orbiframe.fitting.config import OPEN_NAMES, STEPS, TABLES, Data, Output
-from orbiframe.plugin import Component
+from orbiframe.fitting.config import STEPS, TABLES, Data, Output
+from orbiframe.plugin import OPEN_NAMES, Component
 
 TABLE_MEANINGS = {
     "mesh": "The file.",
+    "geometry": "The plane X.",
     "group": "Where the group comes from.",
     "marking": "Only for a group with a name: the mesh is cut open along loops, and the word of its boundary goes"
     " to the group.",
@@ -30,6 +31,8 @@ TABLE_MEANINGS = {
 }
 SELECTOR_MEANINGS = {
     "mesh": "name of a reader; auto takes the one of the suffix",
+    "geometry": "name of a geometry; auto takes s2, e2 or h2 by the sign of the Euler characteristic, which another "
+    "one must have as its curvature",
     "group": "where the group comes from; with mesh, the one that fits the mesh is found; else the name of a group",
     "marking": "name of a marker; auto takes tree-cotree",
     "map": "name of a parametrizer; auto takes sphere for χ > 0 and harmonic for χ ≤ 0, or equivariant if the "
@@ -47,8 +50,8 @@ _RESULT_MEANINGS = {
     "data.noise": "root mean square error of each coordinate of the vertices of a smooth mesh, relative to the "
     "diagonal of the bounding box; if not given, the fairing is found from the vertices by cross-"
     "validation",
-    "data.creases": "edges that bend by so many degrees or more, above 0 and up to 180, stay sharp; the basis is then "
-    "`clough-tocher` unless one is named, `clough-tocher` or `ps2`; see [keep creases](../how_to/keep_creases.md)",
+    "data.creases": "edges of the mesh that bend by so many degrees or more stay sharp; if not given, the surface is "
+    "smooth everywhere",
     "output.refine": "every triangle of the input becomes refine² triangles; if not given, the refined mesh is "
     "cut, about 40 000 triangles in all, of even size",
     "output.tolerance": "largest root mean square error, relative to the diagonal of the bounding box; if given, "

@@ -5,19 +5,23 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.components.geometry_names import geometry_name
 from orbiframe.components.options import place_of
 from orbiframe.delaunay.crease_domain import creased
 from orbiframe.errors import ConfigError, MapError
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.content import content_key, mesh_key, source_key
+from orbiframe.fitting.made import made
 from orbiframe.fitting.stages import Stages
+from orbiframe.groups.group import Group
 from orbiframe.groups.marked_group import MarkedGroup
+from orbiframe.groups.marking import Marking
 from orbiframe.meshes.bending import bending, sharp_edges
 from orbiframe.meshes.bisection import Bisection, affordable_length, bisected, even_edge_length, triangles_made
 from orbiframe.meshes.edge_log import EdgeLog
@@ -89,8 +93,12 @@ class Mapping:
 
         Where creases are kept, they are: a crease stays a chain of edges.
         """
-        log, made = self.flips, triangles_made(self.facets, longest)
-        if log is not None and self.config.data.creases is None and made > _NEEDLES * vertices + self.facets.face_count:
+        log, expected = self.flips, triangles_made(self.facets, longest)
+        if (
+            log is not None
+            and self.config.data.creases is None
+            and expected > _NEEDLES * vertices + self.facets.face_count
+        ):
             log = intrinsic_refinement(log, longest, _MOST * vertices)
         facets = self.triangles if log is None else log.after
         return bisected(self.triangles, affordable_length(facets, longest, vertices), True, log)
@@ -134,21 +142,37 @@ class Mapping:
 
     def _mapped(self, refinement: Bisection, mesh: Polyhedron) -> Mapped:
         """The map of a mesh that is connected like the refinement, verified."""
-        geometry: Geometry = self.stages.registry.geometry(self.surface_type.euler_characteristic)
+        geometry = self._geometry()
         group = None if self.config.group.open else self._named_group(mesh, geometry)
-        name = (PARAMETRIZER if group is None else NAMED_PARAMETRIZER)[geometry.name]
+        plane = geometry_name(self.surface_type.euler_characteristic)
+        name = (PARAMETRIZER if group is None else NAMED_PARAMETRIZER)[plane]
         name = name if self.config.map.open else self.config.map.name
-        parametrizer = self.config.component("map", self.stages.registry, name)
+        registry = self.stages.registry
+        parametrizer = self.config.component("map", registry, name)
         triangulation = self.stages.mapped(
             "map",
             lambda: self._key("map", name, parametrizer, mesh_key(mesh)),
             mesh,
             geometry,
-            partial(parametrizer, mesh, geometry, group),
+            lambda: made(registry, "parametrizer", name, parametrizer(mesh, geometry, group), Triangulation),
         )
         remedy = "map.method = 'auto'" + ("" if group is None else " or group.method = 'mesh'")
         _require_embedding(triangulation, f"the map of '{name}'", remedy)
         return Mapped(refinement, triangulation, self._shaped(refinement, triangulation))
+
+    def _geometry(self) -> Geometry:
+        """The plane that the configuration names, or that of the Euler characteristic."""
+        chi = self.surface_type.euler_characteristic
+        step = self.config.geometry
+        name = geometry_name(chi) if step.open else step.name
+        found = self.config.component("geometry", self.stages.registry, name)()
+        geometry = made(self.stages.registry, "geometry", name, found, Geometry)  # type: ignore[type-abstract]
+        if geometry.curvature != (chi > 0) - (chi < 0):
+            raise MapError(
+                f"a surface of Euler characteristic {chi} is made of {geometry_name(chi)}, and '{name}' has the "
+                f"curvature {geometry.curvature}; leave out geometry.name, or name another geometry"
+            )
+        return geometry
 
     def _shaped(self, refinement: Bisection, first: Triangulation) -> Triangulation:
         """The map changed so that the faces of the polyhedron become regular, where an optimizer is named."""
@@ -156,29 +180,32 @@ class Mapping:
         if step.open:
             return first
         target = refinement.spread(regular_triangles(self.polyhedron))
-        optimizer = self.config.component("shape", self.stages.registry)
+        registry = self.stages.registry
+        optimizer = self.config.component("shape", registry)
         shaped = self.stages.mapped(
             "shape",
             lambda: self._key("shape", step.name, optimizer, _map_key(first), mesh_key(self.polyhedron)),
             first.polyhedron,
             first.orbifold.geometry,
-            partial(optimizer, first, target),
+            lambda: made(registry, "optimizer", step.name, optimizer(first, target), Triangulation),
         )
         _require_embedding(shaped, f"the shapes of '{step.name}'", "shape.method = 'none'")
         return shaped
 
-    def _key(self, table: str, name: str, made: Callable[..., Triangulation], *content: str) -> str:
+    def _key(self, table: str, name: str, maker: Callable[..., Triangulation], *content: str) -> str:
         """The content key of a map: the mesh, the component with its options and source, the group."""
-        steps = {other: self.config.steps[other] for other in (table, "group", "marking")}
+        steps = {other: self.config.steps[other] for other in (table, "geometry", "group", "marking")}
         chosen = {other: (step.name, dict(step.options)) for other, step in steps.items()}
-        return content_key({"component": (table, name), "steps": chosen, "source": source_key(made), "of": content})
+        return content_key({"component": (table, name), "steps": chosen, "source": source_key(maker), "of": content})
 
     def _named_group(self, mesh: Polyhedron, geometry: Geometry) -> MarkedGroup:
         """The mesh cut open to a disc, and the group that the configuration names with the word of its boundary."""
         config, registry = self.config, self.stages.registry
         name = DEFAULT_MARKER if config.marking.open else config.marking.name
-        marking = self.stages("marking", config.component("marking", registry, name), mesh)
-        group = self.stages("group", config.component("group", registry), geometry, marking.word)
+        marker = config.component("marking", registry, name)
+        marking = made(self.stages.registry, "marker", name, self.stages("marking", marker, mesh), Marking)
+        found = self.stages("group", config.component("group", registry), geometry, marking.word)
+        group = made(self.stages.registry, "group", config.group.name, found, Group)  # type: ignore[type-abstract]
         return MarkedGroup(group, marking, config.group.name)
 
 

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.components.registry import Registry
 from orbiframe.fitting.config import Config
+from orbiframe.fitting.given_back import GivenBack
 from orbiframe.fitting.kept_maps import KeptMaps
-from orbiframe.fitting.pipeline import Result, fit, read_mesh
+from orbiframe.fitting.pipeline import Result, fit, mesh_of, registry_for
 from orbiframe.fitting.report import versions
+from orbiframe.fitting.settings import configured
 from orbiframe.fitting.stages import Progress
+from orbiframe.fitting.told import told
 from orbiframe.meshes.defects import require_closed_surface
 from orbiframe.meshes.orientation import face_components
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -28,8 +30,8 @@ Floats = NDArray[np.float64]
 _LEAST = 100
 
 
-@dataclass(frozen=True, eq=False)
-class Parts:
+@dataclass(frozen=True, eq=False, repr=False)
+class Parts(GivenBack):
     """What a fit of several surfaces returns: a result for each, one mesh of all, and one report."""
 
     results: tuple[Result, ...]
@@ -37,16 +39,14 @@ class Parts:
     report: dict[str, Any]
 
 
-def _silent(_stage: str, _seconds: float | None) -> None: ...
-
-
 def fit_parts(
-    mesh: str | Path | Polyhedron,
-    config: Config,
-    registry: Registry,
-    progress: Progress = _silent,
+    mesh: object,
+    config: Config | None = None,
+    registry: Registry | None = None,
+    progress: Progress | Literal[False] | None = None,
     *,
     maps: KeptMaps | None = None,
+    **settings: Any,
 ) -> Parts:
     """The smooth surfaces of all components of a polyhedron, that with the most faces first.
 
@@ -55,8 +55,14 @@ def fit_parts(
     give one with "parts", the report of each, and with the errors, relative to the box of all, and the sizes of all
     together. See `fit` for the rest.
     """
-    config = config.checked(registry)
-    whole = mesh if isinstance(mesh, Polyhedron) else read_mesh(Path(mesh), config, registry)
+    config = configured(config, settings)
+    registry = registry_for(config) if registry is None else registry
+    with told(progress) as heard:
+        return _fitted(mesh, config.checked(registry), registry, heard, maps)
+
+
+def _fitted(mesh: object, config: Config, registry: Registry, progress: Progress, maps: KeptMaps | None) -> Parts:
+    whole = mesh_of(mesh, config, registry)
     require_closed_surface(whole, several=True)
     count = face_components(whole)[0]
     if count == 1:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,14 +15,18 @@ from orbiframe.errors import TopologyError
 from orbiframe.files import gate
 from orbiframe.fitting.approximation import Approximations
 from orbiframe.fitting.config import Config
+from orbiframe.fitting.given_back import GivenBack
 from orbiframe.fitting.inspection import inspected
 from orbiframe.fitting.kept_maps import KeptMaps
 from orbiframe.fitting.limits import require_density
 from orbiframe.fitting.mapping import Mapping
 from orbiframe.fitting.report import report
+from orbiframe.fitting.settings import configured
 from orbiframe.fitting.stages import Progress, Stages
+from orbiframe.fitting.told import told
 from orbiframe.meshes.defects import require_closed_surface
 from orbiframe.meshes.face_diagonals import triangulated
+from orbiframe.meshes.foreign_meshes import polyhedron_of
 from orbiframe.meshes.orientation import oriented
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.surface_type import without_unused_vertices
@@ -32,8 +36,8 @@ from orbiframe.surfaces.surface import OrbifoldSurface
 _OUTPUT_FACES = 40_000
 
 
-@dataclass(frozen=True, eq=False)
-class Result:
+@dataclass(frozen=True, eq=False, repr=False)
+class Result(GivenBack):
     """What a fit returns: the surface, a mesh on it with normals, and the report of all steps as plain data."""
 
     surface: OrbifoldSurface
@@ -41,28 +45,39 @@ class Result:
     report: dict[str, Any]
 
 
-def _silent(_stage: str, _seconds: float | None) -> None: ...
-
-
 def fit(
-    mesh: str | Path | Polyhedron,
-    config: Config,
-    registry: Registry,
-    progress: Progress = _silent,
+    mesh: object,
+    config: Config | None = None,
+    registry: Registry | None = None,
+    progress: Progress | Literal[False] | None = None,
     *,
     share: float = 1.0,
     maps: KeptMaps | None = None,
+    **settings: Any,
 ) -> Result:
-    """The smooth surface of a closed polyhedron, given as a file or as an object.
+    """The smooth surface of a closed polyhedron: `fit("shape.off", size=500)`.
 
-    progress: called with the name of each stage at its start (seconds None) and at its end; share: of the faces that
-    a fine picture needs; maps: a folder from which maps to X/H are taken where they are there, and in which they are
-    kept. Raises FormatError, TopologyError, MapError, FitError or ConfigError, each a sentence with a
-    next step.
+    mesh: the name of a file; a Polyhedron; a pair (vertices, faces); or a mesh of trimesh, PyVista, meshio or Open3D,
+    see `Polyhedron.of`. config: by default that of an empty file; registry: by default all that is installed. progress:
+    called with the name of each stage at its start (seconds None) and at its end; None says what takes long on the
+    standard error stream, False nothing. share: of the faces that a fine picture needs; maps: a folder from which maps
+    to X/H are taken where they are there, and in which they are kept.
+
+    settings: what is to differ from the configuration: `size`, `tolerance`, `max_error`, `refine` and `fast=True` as on
+    the command line; a table by its name, `basis="ps2"` or `fitter={"name": "smoothing", "fairing": 1e-3}`. Raises
+    FormatError, TopologyError, MapError, FitError or ConfigError, each a sentence with a next step, and UsageError for
+    an unknown keyword or what is no mesh.
     """
-    stages = Stages(registry, progress, maps=maps)
+    config = configured(config, settings)
+    registry = registry_for(config) if registry is None else registry
+    with told(progress) as heard:
+        return _fitted(mesh, config, Stages(registry, heard, maps=maps), share)
+
+
+def _fitted(mesh: object, config: Config, stages: Stages, share: float) -> Result:
+    registry = stages.registry
     config = config.checked(registry)
-    polyhedron = mesh if isinstance(mesh, Polyhedron) else stages("read", read_mesh, Path(mesh), config, registry)
+    polyhedron = mesh if isinstance(mesh, Polyhedron) else stages("read", mesh_of, mesh, config, registry)
     surface_type = stages("topology", require_closed_surface, polyhedron)
     require_density(config.output.refine, int((polyhedron.face_sizes - 2).sum()), config.places)
     unit, origin, scale = _normalised(oriented(without_unused_vertices(polyhedron)))
@@ -85,9 +100,16 @@ def _tessellated(surface: OrbifoldSurface, refine: int | None, wanted: float) ->
     return surface.tessellate(max(1, round(math.sqrt(wanted / faces))), bisected=True)
 
 
-def read_mesh(path: Path, config: Config, registry: Registry) -> Polyhedron:
-    """The polyhedron of a file, by the reader that the configuration names or the suffix."""
-    return gate.read(path, registry, format=None if config.mesh.open else config.mesh.name)
+def registry_for(config: Config) -> Registry:
+    """All that is installed, with the plugin files of a configuration."""
+    return Registry.discover(files=config.plugins)
+
+
+def mesh_of(mesh: object, config: Config, registry: Registry) -> Polyhedron:
+    """The polyhedron of a file, by the reader that the configuration names or the suffix, or of an object."""
+    if not isinstance(mesh, str | Path):
+        return polyhedron_of(mesh)
+    return gate.read(Path(mesh), registry, format=None if config.mesh.open else config.mesh.name)
 
 
 def _normalised(polyhedron: Polyhedron) -> tuple[Polyhedron, NDArray[np.float64], float]:

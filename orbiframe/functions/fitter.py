@@ -15,7 +15,12 @@ Floats = NDArray[np.float64]
 
 
 class Fitter(ABC):
-    """A way to approximate; built by keyword options from the configuration alone."""
+    """A way to approximate; built by keyword options from the configuration alone.
+
+    linear: whether it claims that its coefficients are linear in the values; a robust fitter does not.
+    """
+
+    linear: bool = True
 
     @abstractmethod
     def fit(self, basis: Basis, samples: Samples) -> Floats:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.components.one_line import one_line
 from orbiframe.errors import FitError
 from orbiframe.meshes.edge_paths import covering_points, dijkstra_forest, edge_graph
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -53,6 +54,8 @@ class Samples:
     noise: float | None = None
     normals: Floats | None = None
     still: Bools | None = None
+
+    __repr__ = one_line
 
     def __post_init__(self) -> None:
         count = len(self.points.patch)

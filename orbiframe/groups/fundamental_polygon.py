@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from orbiframe.components.geometry_names import geometry_name
+from orbiframe.components.one_line import one_line
 from orbiframe.errors import GeometryError
 from orbiframe.planes.geometry import Geometry
 from orbiframe.planes.precise_isometry import PreciseIsometry
@@ -35,6 +36,8 @@ class FundamentalPolygon:
     geometry: Geometry
     vertices: Floats
     word: Word
+
+    __repr__ = one_line
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", _coordinates(self.vertices))

@@ -10,6 +10,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order
 
 from orbiframe.compiled.decorator import compiled
+from orbiframe.components.one_line import one_line
 from orbiframe.errors import TopologyError
 from orbiframe.meshes.edge_paths import joining_edges
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -38,6 +39,8 @@ class Marking:
     position: Ints
     sides: Ints
     loops: tuple[Ints, ...]
+
+    __repr__ = one_line
 
     @property
     def transitions(self) -> tuple[Ints, Ints]:

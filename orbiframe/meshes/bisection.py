@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.components.one_line import one_line
 from orbiframe.errors import TopologyError
 from orbiframe.meshes.edge_log import EdgeLog
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -38,6 +39,8 @@ class Bisection:
     side: Ints
     child: Ints
     log: EdgeLog | None = None
+
+    __repr__ = one_line
 
     @property
     def facets(self) -> Polyhedron:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,7 +25,7 @@ LARGE = 2**20
 UNITS = ("millimetre", "metre")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Polyhedron:
     """A complex of polygons in space, closed or not, orientable or not.
 
@@ -84,6 +85,20 @@ class Polyhedron:
             return cls.from_corners(vertices, offsets, faces.ravel())
         offsets = np.cumsum([0, *(len(face) for face in faces)])
         return cls.from_corners(vertices, offsets, np.array([i for face in faces for i in face], dtype=np.intp))
+
+    @classmethod
+    def of(cls, mesh: object) -> Polyhedron:
+        """The polyhedron of a mesh of another library, of a pair (vertices, faces), or of a polyhedron, itself.
+
+        vertices: (V, 3); faces: (F, n), or a list of faces of any sizes. Else a mesh of trimesh, PyVista, meshio or
+        Open3D. Raises UsageError for any other object, TopologyError for arrays of a wrong shape, type or range.
+        """
+        from orbiframe.meshes.foreign_meshes import polyhedron_of
+
+        return polyhedron_of(mesh)
+
+    def __repr__(self) -> str:
+        return f"<Polyhedron: {len(self.vertices)} vertices, {self.edge_count} edges, {self.face_count} faces>"
 
     @property
     def face_count(self) -> int:
@@ -161,6 +176,30 @@ class Polyhedron:
     def with_vertices(self, vertices: Floats, normals: Floats | None = None) -> Polyhedron:
         """The same faces with other vertices (and normals); colours are kept, normals of corners are not."""
         return replace(self, vertices=np.asarray(vertices, dtype=np.float64), normals=normals, corner_normals=None)
+
+    def to_trimesh(self) -> Any:
+        """A trimesh.Trimesh of triangles, with the normals if there are some; vertices keep their numbers."""
+        from orbiframe.meshes.foreign_meshes import to_trimesh
+
+        return to_trimesh(self)
+
+    def to_pyvista(self) -> Any:
+        """A pyvista.PolyData of the polygons, with the normals as the array "Normals" if there are some."""
+        from orbiframe.meshes.foreign_meshes import to_pyvista
+
+        return to_pyvista(self)
+
+    def to_meshio(self) -> Any:
+        """A meshio.Mesh, a block of cells for every size of faces, with the normals as "Normals" if there are some."""
+        from orbiframe.meshes.foreign_meshes import to_meshio
+
+        return to_meshio(self)
+
+    def to_open3d(self) -> Any:
+        """An open3d.geometry.TriangleMesh, with the normals if there are some."""
+        from orbiframe.meshes.foreign_meshes import to_open3d
+
+        return to_open3d(self)
 
 
 def _require_corners(vertex_count: int, offsets: Ints, tail: Ints) -> None:

@@ -38,11 +38,13 @@ class SurfaceType:
         return ", ".join(words)
 
 
-def surface_type(polyhedron: Polyhedron) -> SurfaceType:
+def surface_type(polyhedron: object) -> SurfaceType:
     """The surface that the faces make: Euler characteristic, orientability, components and genus.
 
-    Vertices in no face do not count. Linear in the number of halfedges, up to one sort.
+    Vertices in no face do not count. Linear in the number of halfedges, up to one sort. polyhedron: or what
+    `Polyhedron.of` takes.
     """
+    polyhedron = Polyhedron.of(polyhedron)
     components, sheets, _ = _face_sheets(polyhedron)
     used = int(_used_vertices(polyhedron).sum())
     chi = used - polyhedron.edge_count + polyhedron.face_count

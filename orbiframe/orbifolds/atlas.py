@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.components.one_line import one_line
 from orbiframe.planes.geometry import Geometry
 
 Floats = NDArray[np.float64]
@@ -38,6 +39,8 @@ class Atlas:
     head: Ints
     inverse: Ints
     isometry: Floats
+
+    __repr__ = one_line
 
     @property
     def patch_count(self) -> int:

@@ -9,6 +9,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from orbiframe.components.one_line import one_line
 from orbiframe.orbifolds.atlas import Atlas, Points
 from orbiframe.planes.geometry import Geometry
 
@@ -32,6 +33,8 @@ class Copies:
     patch: Ints
     isometry: Floats
 
+    __repr__ = one_line
+
     def take(self, chosen: Ints | Bools) -> Copies:
         """Some of the copies."""
         return Copies(self.base[chosen], self.patch[chosen], self.isometry[chosen])
@@ -48,6 +51,8 @@ class Orbifold:
     euler_characteristic: int | Fraction
     orientable: bool
     area: float
+
+    __repr__ = one_line
 
     @property
     def geometry(self) -> Geometry:

@@ -18,6 +18,7 @@ from .principal import (
     principal_curvature as principal_curvature,
 )
 from .quadrilateral_patches import QuadrilateralPatches as QuadrilateralPatches
+from .shaded_mesh import ShadedPicture as ShadedPicture, shaded_picture as shaded_picture
 from .surface import Curvature as Curvature, OrbifoldSurface as OrbifoldSurface, Tessellation as Tessellation
 from .surface_forms import SurfaceForms as SurfaceForms
 from .triangle_patches import TrianglePatches as TrianglePatches

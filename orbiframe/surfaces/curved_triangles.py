@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.components.one_line import one_line
 from orbiframe.errors import UsageError
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.subdivision import refine
@@ -34,6 +35,8 @@ class CurvedMesh:
     order: int
     nodes: Floats
     elements: Ints
+
+    __repr__ = one_line
 
     @property
     def corners(self) -> Ints:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from orbiframe.components.one_line import one_line
 from orbiframe.components.registry import Registry
 from orbiframe.errors import FitError
 from orbiframe.functions.basis import Basis
@@ -42,6 +43,8 @@ class Field:
     left_out: Floats | None = None
     fairing: float | None = None
     freedom: float | None = None
+
+    __repr__ = one_line
 
     def evaluate(self, points: Points) -> Floats:
         """The values (n, q) over points of X/H."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -18,17 +19,20 @@ from orbiframe.meshes.told_by_ends import refined_by_ends
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.planes.quadrature import triangle_points
+from orbiframe.surfaces.places_in_triangles import require_places
 from orbiframe.triangulations.crease_chains import on_crease
 from orbiframe.triangulations.triangulation import Triangulation
 
 if TYPE_CHECKING:
     from orbiframe.functions.fitter import Fitter
     from orbiframe.surfaces.field import Field
+    from orbiframe.surfaces.shaded_mesh import ShadedPicture
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 _CHUNK = 1 << 16
+_PICTURED = 30_000  # triangles, or about so many
 # The side of a crease on which the corner of a face lies is told so far inside of the face, as a share of it.
 _INSIDE = 1e-6
 
@@ -63,7 +67,7 @@ class Tessellation(NamedTuple):
     points: Points
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class OrbifoldSurface:
     """The image of X/H under three functions of a basis, placed in space.
 
@@ -87,9 +91,19 @@ class OrbifoldSurface:
         """The parameter domain X/H."""
         return self.triangulation.orbifold
 
-    def points(self, face: Ints, barycentric: Floats) -> Points:
-        """The points of X/H at barycentric coordinates (n, 3) in triangles (n,) of the input mesh."""
-        return self.triangulation.locate(*self.refinement.locate(face, barycentric))
+    def __repr__(self) -> str:
+        chi, kind = self.orbifold.euler_characteristic, "orientable" if self.orbifold.orientable else "nonorientable"
+        made = f"{self.basis.size} functions" + (f" of {self.basis_name}" if self.basis_name else "")
+        return f"<OrbifoldSurface: {kind}, Euler characteristic {chi}; {made}; over {self.refinement.coarse}>"
+
+    def points(self, face: ArrayLike, barycentric: ArrayLike) -> Points:
+        """The points of X/H at barycentric coordinates (n, 3) in triangles (n,) of the input mesh.
+
+        Raises GeometryError for a triangle that is not there, and for coordinates that are negative or whose sum is not
+        1; rounding is forgiven.
+        """
+        triangles, places = require_places(face, barycentric, self.refinement.coarse.face_count)
+        return self.triangulation.locate(*self.refinement.locate(triangles, places))
 
     def evaluate(self, points: Points) -> Floats:
         """The surface points (n, 3) over points of X/H."""
@@ -131,6 +145,35 @@ class OrbifoldSurface:
             bent = self._unit_curvature(Points(np.repeat(first_patch[part], order**2), x.reshape(-1, 3)))
             total += float(np.abs(weights).ravel() @ (bent.gaussian * bent.element))
         return total
+
+    def nearest(self, targets: ArrayLike) -> tuple[Points, Floats]:
+        """The points of X/H whose surface points are nearest to points in space (n, 3), and the distances (n,).
+
+        See `orbiframe.surfaces.nearest_points`.
+        """
+        from orbiframe.surfaces.nearest import nearest_points
+
+        return nearest_points(self, np.asarray(targets, dtype=np.float64))
+
+    def distance(self, targets: ArrayLike) -> Floats:
+        """The distance (n,) of points in space (n, 3) to the surface."""
+        return self.nearest(targets)[1]
+
+    def picture(
+        self, path: str | Path | None = None, *, width: int = 480, view: tuple[float, float, float] | None = None
+    ) -> ShadedPicture:
+        """A picture of the surface, which a notebook shows, written as a PNG file where a path is given.
+
+        width: in pixels; view: the direction from the surface to the eye.
+        """
+        from orbiframe.surfaces.shaded_mesh import VIEW, shaded_picture
+
+        faces = self.triangulation.polyhedron.face_count
+        mesh = self.tessellate(max(1, round((_PICTURED / faces) ** 0.5)), bisected=True)
+        made = shaded_picture(mesh, width=width, view=VIEW if view is None else view)
+        if path is not None:
+            made.save(path)
+        return made
 
     def fit_field(
         self, points: Points | ArrayLike, values: ArrayLike, *, fitter: Fitter | None = None, basis: Basis | None = None

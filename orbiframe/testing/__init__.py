@@ -8,6 +8,6 @@ A plugin's whole test file may read
 """
 
 from orbiframe.testing.kit import Laws, Verdict, contract_tests, laws_of
-from orbiframe.testing.lab import Lab
+from orbiframe.testing.lab import Lab, Untried
 
-__all__ = ["Lab", "Laws", "Verdict", "contract_tests", "laws_of"]
+__all__ = ["Lab", "Laws", "Untried", "Verdict", "contract_tests", "laws_of"]

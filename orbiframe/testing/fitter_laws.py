@@ -14,7 +14,7 @@ from orbiframe.functions.fitter import Fitter, ValidatedFitter
 from orbiframe.functions.orbit_sum_basis import OrbitSumBasis
 from orbiframe.functions.samples import Samples
 from orbiframe.orbifolds.atlas import Points
-from orbiframe.testing.lab import Lab
+from orbiframe.testing.lab import Lab, Untried
 from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
@@ -43,8 +43,11 @@ def smooth_data_in_the_span_is_nearly_reproduced(component: Component, lab: Lab)
 def result_is_linear_in_the_values(component: Component, lab: Lab) -> None:
     """The fit of a combination of data is the combination of the fits, and columns do not mix.
 
-    A fitter that finds its fairing from the data is taken with the fairing that it finds first.
+    A fitter that finds its fairing from the data is taken with the fairing that it finds first; one that does not claim
+    to be linear is not tried.
     """
+    if not component().linear:
+        raise Untried("it does not claim to be linear (Fitter.linear)")
     for case in _cases(lab):
         u, v = lab.rng.normal(size=(2, _COUNT, 2))
         component = _settled(component, case, u)

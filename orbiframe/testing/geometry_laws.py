@@ -53,6 +53,18 @@ def versine_is_the_smooth_distance(component: Component, lab: Lab) -> None:
     _close(geometry.versine(x, y) / (2 * _sine(geometry, length / 2) ** 2), np.ones(20), 1e-6)
 
 
+def small_distances_keep_their_digits(component: Component, lab: Lab) -> None:
+    """Points from 1e-9 to 1 apart have that distance to twelve digits at the origin, and to rounding elsewhere."""
+    geometry = component()
+    length = np.geomspace(1e-9, 1.0, 20)
+    near = geometry.from_polar(length, lab.rng.uniform(-np.pi, np.pi, 20))
+    _close(geometry.distance(geometry.origin, near) / length, np.ones(20), 1e-12)
+    x = _points(geometry, lab, 20)
+    y = geometry.exp(x, length[:, None] * _directions(geometry, lab, x))
+    # A point of size e^r that is rounded is off by 1e-16 e^r.
+    _close(np.abs(geometry.distance(x, y) - length), np.zeros(20), 1e-14)
+
+
 def distance_is_the_length_of_the_geodesic(component: Component, lab: Lab) -> None:
     """The steps of a finely divided geodesic, measured by the scalar product, add up to the distance of its ends."""
     geometry = component()
@@ -143,6 +155,7 @@ LAWS: tuple[Callable[[Component, Lab], None], ...] = (
     points_have_no_defect,
     distance_is_a_metric,
     versine_is_the_smooth_distance,
+    small_distances_keep_their_digits,
     distance_is_the_length_of_the_geodesic,
     log_inverts_exp,
     polar_radius_is_distance,
@@ -177,7 +190,19 @@ _four_times_curved = _altered(
     from_polar=lambda from_polar, r, a: from_polar(2 * np.asarray(r), a),
 )
 
+
+def _from_the_product(_: Callable[..., Any], x: Floats, y: Floats) -> Floats:
+    """The distance as textbooks have it: arccos and arccosh of a product, which lose half of the digits."""
+    straight = np.sqrt(((x - y)[..., 1:] ** 2).sum(axis=-1))
+    if np.allclose(np.asarray(x)[..., 0], 1) and np.allclose(np.asarray(y)[..., 0], 1):
+        return np.asarray(straight)
+    on_sphere = np.allclose((np.asarray(x) ** 2).sum(axis=-1), 1)
+    product = np.sum(x * y * np.array([1, 1, 1] if on_sphere else [1, -1, -1]), axis=-1)
+    return np.asarray(np.arccos(np.minimum(product, 1)) if on_sphere else np.arccosh(np.maximum(product, 1)))
+
+
 MUTANTS: dict[str, Callable[[Component], Component]] = {
+    "small_distances_keep_their_digits": _altered(distance=_from_the_product),
     "points_have_no_defect": _altered(project=lambda _, x: np.array(x)),
     "distance_is_a_metric": _altered(distance=lambda distance, x, y: distance(x, y) ** 2),
     "versine_is_the_smooth_distance": _altered(versine=lambda versine, x, y: 2 * versine(x, y)),

@@ -16,7 +16,7 @@ from orbiframe.groups.group import Group
 from orbiframe.orbifolds.atlas import Atlas
 from orbiframe.planes.geometry import Geometry
 from orbiframe.testing.lab import Lab
-from orbiframe.words.word import Word
+from orbiframe.words.word import Word, standard_word
 
 Floats = NDArray[np.float64]
 Component = Callable[[Geometry, Word], Group]
@@ -37,6 +37,13 @@ CASES = (
     ("h2", "aabbcc"),
     ("h2", "abACbC"),
 )
+
+
+def the_word_is_the_one_asked_for(component: Component, _: Lab) -> None:
+    """The group has the geometry and the word that it was asked for: no other group under the name of this one."""
+    for geometry, word, group in _asked(component):
+        assert group.word == word, f"asked for '{word}', the group has the word '{group.word}'"
+        assert group.geometry.curvature == geometry.curvature, f"the group of '{word}' lives in another geometry"
 
 
 def pairings_are_isometries(component: Component, _: Lab) -> None:
@@ -129,6 +136,7 @@ def tiles_are_named_by_words(component: Component, _: Lab) -> None:
 
 
 LAWS: tuple[Callable[[Component, Lab], None], ...] = (
+    the_word_is_the_one_asked_for,
     pairings_are_isometries,
     twins_are_inverse,
     cycle_relations_hold,
@@ -192,7 +200,13 @@ def _with_isometries(atlas: Atlas, isometry: Floats) -> Atlas:
     return Atlas(atlas.geometry, atlas.radius, atlas.tail, atlas.head, atlas.inverse, isometry)
 
 
+def _of_another_word(component: Component) -> Component:
+    """The group of the standard word of the same surface, whatever the word."""
+    return lambda geometry, word: component(geometry, standard_word(word.euler_characteristic, word.orientable))
+
+
 MUTANTS: dict[str, Callable[[Component], Component]] = {
+    "the_word_is_the_one_asked_for": _of_another_word,
     "pairings_are_isometries": _altered(atlas=_bent_atlas),
     "twins_are_inverse": _altered(atlas=_turned_atlas),
     "cycle_relations_hold": _altered(generator=lambda g, label: g.generator(label) @ g.geometry.rotation(0.1 * label)),
@@ -218,14 +232,20 @@ def _geometry(name: str) -> Geometry:
 
 
 def _groups(component: Component) -> Iterator[Group]:
+    return (group for _, _, group in _asked(component))
+
+
+def _asked(component: Component) -> Iterator[tuple[Geometry, Word, Group]]:
+    """Geometry and word of the cases that the component takes, with the group that it gives."""
     taken = 0
     for name, text in CASES:
+        geometry, word = _geometry(name), Word.parse(text)
         try:
-            group = component(_geometry(name), Word.parse(text))
+            group = component(geometry, word)
         except GeometryError:
             continue
         taken += 1
-        yield group
+        yield geometry, word, group
     assert taken, "the component takes none of the surfaces " + ", ".join(f"{text} in {name}" for name, text in CASES)
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from orbiframe.errors import UsageError
 from orbiframe.plugin import KINDS
-from orbiframe.testing.lab import Lab
+from orbiframe.testing.lab import Lab, Untried
 
 Law = Callable[[Callable[..., Any], Lab], None]
 Mutation = Callable[[Callable[..., Any]], Callable[..., Any]]
@@ -34,11 +34,12 @@ class Laws:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """Whether a law held: `error` is None, or what the law found."""
+    """Whether a law held: `error` is None, or what the law found; `untried`: why it could not be tried."""
 
     law: str
     statement: str
     error: str | None
+    untried: str | None = None
 
 
 def laws_of(kind: str) -> Laws:
@@ -68,8 +69,9 @@ def contract_tests(
     """A test for pytest, to be bound to a name that starts with test_: one case for each law of the kind.
 
     component: the class or function; params: options bound to it; suffix and counterpart: for files, see `Lab`.
-    expected_failures: laws that are known not to hold, with the reason; a law in it that holds fails the test. Raises
-    UsageError for a kind without laws, or an expected failure that is no law.
+    A law that cannot be tried is skipped, with the reason. expected_failures: laws that are known not to hold, with the
+    reason; a law in it that holds fails the test. Raises UsageError for a kind without laws, or an expected failure
+    that is no law.
     """
     import pytest
 
@@ -80,7 +82,10 @@ def contract_tests(
 
     @pytest.mark.parametrize("law", [_case(law, reasons.get(law.__name__)) for law in laws])
     def contract(law: Law, tmp_path: Path) -> None:
-        law(bound(component, options), Lab(tmp_path, options, suffix, counterpart))
+        try:
+            law(bound(component, options), Lab(tmp_path, options, suffix, counterpart))
+        except Untried as reason:
+            pytest.skip(str(reason))
 
     return contract
 
@@ -99,7 +104,9 @@ def tried(law: Callable[..., None], *materials: object) -> Verdict:
     """What one law says of what it is given."""
     try:
         law(*materials)
-    except Exception as error:
+    except Untried as reason:
+        return Verdict(law.__name__, statement(law), None, str(reason))
+    except (Exception, SystemExit) as error:
         return Verdict(law.__name__, statement(law), f"{type(error).__name__}: {error}")
     return Verdict(law.__name__, statement(law), None)
 

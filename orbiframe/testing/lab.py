@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from orbiframe.triangulations.triangulation import Triangulation
 
 
+class Untried(Exception):
+    """A law cannot be tried on this component; the text says why."""
+
+
 @dataclass(frozen=True)
 class Lab:
     """A fresh folder, random numbers that repeat, and reference objects.

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from orbiframe.components.one_line import one_line
 from orbiframe.errors import MapError
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.orbifolds.atlas import Points
@@ -43,6 +44,8 @@ class Triangulation:
     density: Floats | None = None
     crease: Bools | None = None
     sites: Ints | None = None
+
+    __repr__ = one_line
 
     @cached_property
     def corner_transitions(self) -> Ints:

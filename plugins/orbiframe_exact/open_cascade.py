@@ -87,7 +87,10 @@ def write_iges(
     unit: str = "mm",
     name: str = _NAME,
 ) -> dict[str, Any]:
-    """The surface in an IGES file (5.3); for the options see `write_step`."""
+    """The surface in an IGES file (5.3).
+
+    The options exact, faces, tolerance, unit and name are those of `write_step`.
+    """
     placed = _in_unit(path, surface, unit)
     # The writer takes shapes for millimetres and converts them.
     shape, found, _ = _shape(_scaled(placed, _UNITS[unit][1]), exact, faces, tolerance)

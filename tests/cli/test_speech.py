@@ -58,7 +58,8 @@ def test_letters_that_a_stream_has_not_are_escaped(cube: Path, tmp_path: Path, e
     named = tmp_path / "würfel ∂ 立方体.off"
     cube.rename(named)
     ran = run(["fit", named, "-o", tmp_path / "s.ply", *FIT], **environment)
-    assert (ran.returncode, ran.stderr) == (0, "")
+    said = [line for line in ran.stderr.splitlines() if "at work for" not in line]
+    assert (ran.returncode, said) == (0, [])
     assert "angles off by" in ran.stdout
     for arguments in (["info", named], ["info", named, named], ["info", tmp_path / "∂.off"]):
         ran = run(arguments, **environment)

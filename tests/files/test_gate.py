@@ -27,6 +27,9 @@ class Shelf:
     def components(self, kind):
         return [Component(kind, name, "a:b", "-", suffixes=(".any", f".{name}")) for name in sorted(self.functions)]
 
+    def for_suffix(self, kind, suffix):
+        return [c for c in self.components(kind) if suffix in c.suffixes]
+
     def component(self, kind, name):
         return next(c for c in self.components(kind) if c.name == name)
 

@@ -6,15 +6,17 @@ from itertools import islice
 
 import pytest
 
+from orbiframe.cli import plugin as commands
 from orbiframe.components.registry import Registry, resolve
 from orbiframe.errors import OrbiframeError, UsageError
 from orbiframe.plugin import KINDS, Component
 from orbiframe.testing import Lab, component_laws, contract_tests, laws_of
 from orbiframe.testing.check import check, equipments
 from orbiframe.testing.kit import bound, has_laws, tried
+from orbiframe.words import standard_word
 
-LAWFUL_KINDS = tuple(kind for kind in KINDS if kind != "command")
 REGISTRY = Registry.discover()
+REGISTRY.register("commands", commands)
 DECLARED = [component for component, _ in REGISTRY.declarations()]
 
 
@@ -27,7 +29,6 @@ def component_cases():
     return [
         pytest.param(component, equipment, law, id=" ".join([title(component), *suffix(equipment), law.__name__]))
         for component in DECLARED
-        if component.kind in LAWFUL_KINDS
         for equipment in islice(equipments(component, REGISTRY), 1)
         if tried_here(component, equipment)
         for law in laws_of(component.kind).laws
@@ -46,12 +47,10 @@ def suffix(equipment: dict) -> list[str]:
 
 def mutant_cases():
     """Each mutation on the first installed component of its kind that needs no extra."""
-    return [
-        pytest.param(kind, name, id=f"{kind} {name}") for kind in LAWFUL_KINDS for name in sorted(laws_of(kind).mutants)
-    ]
+    return [pytest.param(kind, name, id=f"{kind} {name}") for kind in KINDS for name in sorted(laws_of(kind).mutants)]
 
 
-@pytest.mark.parametrize("kind", LAWFUL_KINDS)
+@pytest.mark.parametrize("kind", KINDS)
 def test_every_kind_has_laws_a_mutant_for_each_and_a_component(kind):
     laws = laws_of(kind)
     names = [law.__name__ for law in laws.laws]
@@ -135,9 +134,9 @@ def test_a_component_that_cannot_be_imported_gets_one_verdict():
 
 
 def test_a_kind_without_laws_is_named():
-    assert [kind for kind in KINDS if has_laws(kind)] == list(LAWFUL_KINDS)
-    with pytest.raises(UsageError, match="no laws for the kind 'command'; kinds with laws: geometry"):
-        laws_of("command")
+    assert [kind for kind in KINDS if has_laws(kind)] == list(KINDS)
+    with pytest.raises(UsageError, match="no laws for the kind 'spline'; kinds with laws: geometry"):
+        laws_of("spline")
 
 
 test_h2_by_the_public_way = contract_tests("geometry", REGISTRY.load("geometry", "h2"))
@@ -173,3 +172,36 @@ def test_options_are_bound(tmp_path):
     with pytest.raises(ValueError):  # noqa: PT011
         test(laws_of("geometry").laws[0], tmp_path)
     assert seen == [0.4]
+
+
+def test_a_fitter_that_does_not_claim_to_be_linear_is_not_tried(tmp_path):
+    base = type(REGISTRY.load("fitter", "least-squares")())
+    law = next(law for law in laws_of("fitter").laws if law.__name__ == "result_is_linear_in_the_values")
+
+    class Cubed(base):
+        """As good as linear for small values, and not linear."""
+
+        linear = False
+
+        def fit(self, basis, samples):
+            found = super().fit(basis, samples)
+            return found + 1e-3 * found**3
+
+    assert tried(law, Cubed, Lab(tmp_path)).untried == "it does not claim to be linear (Fitter.linear)"
+    Cubed.linear = True
+    assert "differ" in tried(law, Cubed, Lab(tmp_path)).error
+
+
+def test_a_group_that_has_the_word_and_not_the_relations_is_rejected(tmp_path):
+    """The generators of one gluing under the word of another one of the same surface."""
+    regular = REGISTRY.load("group", "regular-polygon")
+
+    def stubborn(geometry, word):
+        group = regular(geometry, standard_word(word.euler_characteristic, word.orientable))
+        group.word = word
+        return group
+
+    verdicts = [tried(law, stubborn, Lab(tmp_path)) for law in laws_of("group").laws]
+    assert any(verdict.error for verdict in verdicts)
+    assert verdicts[0].law == "the_word_is_the_one_asked_for"
+    assert verdicts[0].error is None

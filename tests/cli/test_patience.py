@@ -1,0 +1,58 @@
+"""No command is silent for more than two seconds at its start."""
+
+from __future__ import annotations
+
+import io
+import re
+import sys
+import time
+
+import pytest
+
+from orbiframe.cli import patience
+from orbiframe.cli.patience import patient
+from orbiframe.cli.progress import Progress
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def said_within(stream: io.StringIO, pattern: str, seconds: float) -> None:
+    end = time.monotonic() + seconds
+    while not re.search(pattern, stream.getvalue()):
+        assert time.monotonic() < end, stream.getvalue()
+        time.sleep(0.01)
+
+
+def test_a_log_is_told_that_a_command_is_at_work(monkeypatch):
+    monkeypatch.setattr(sys, "stderr", log := io.StringIO())
+    with patient("info"):
+        said_within(log, r"^orbiframe: info: at work for 2 s …\n$", 2.0)
+
+
+def test_lines_become_rarer(monkeypatch):
+    monkeypatch.setattr(patience, "_FIRST", 0.02)
+    monkeypatch.setattr(sys, "stderr", log := io.StringIO())
+    with patient("info"):
+        time.sleep(0.5)
+    # After 0.02, 0.03, 0.045, ...: eight of them fit into half a second, where evenly there would be 25.
+    assert 2 <= len(log.getvalue().splitlines()) <= 8
+
+
+def test_a_stage_on_a_terminal_gets_its_seconds(monkeypatch):
+    monkeypatch.setattr(sys, "stderr", terminal := Terminal())
+    with patient("fit"):
+        Progress(terminal)("map", None)
+        said_within(terminal, r"\rmap … 1 s", 3.0)
+        Progress(terminal)("map", 1.0)
+    assert "at work" not in terminal.getvalue()
+
+
+@pytest.mark.parametrize("quiet", [True, False])
+def test_what_is_quick_or_quiet_says_nothing(monkeypatch, quiet):
+    monkeypatch.setattr(sys, "stderr", log := io.StringIO())
+    with patient("info", quiet=quiet):
+        time.sleep(0.05)
+    assert log.getvalue() == ""
