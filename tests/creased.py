@@ -8,6 +8,7 @@ import numpy as np
 from fitted import DATASETS, REGISTRY
 
 from orbiframe.delaunay.crease_domain import creased
+from orbiframe.files import gate
 from orbiframe.fitting import pipeline
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.pipeline import Result
@@ -35,7 +36,7 @@ def cylinder(sides: int, rows: int = 1) -> Polyhedron:
 @cache
 def mesh_of(name: str) -> Polyhedron:
     """A mesh by name, triangles only."""
-    mesh = cylinder(24) if name == "cylinder" else pipeline.read_mesh(DATASETS / name, Config.load(), REGISTRY)
+    mesh = cylinder(24) if name == "cylinder" else gate.read(DATASETS / name, REGISTRY)
     return triangulated(mesh)
 
 
