@@ -28,7 +28,7 @@ def test_cad_files_hold_the_exact_patches(orbiframe, tmp_path):
     assert "exact rational patches" in ran.out
     few = orbiframe("fit", CUBE, "-o", tmp_path / "few.step", *QUICK, "--faces", 20)
     assert few.status == 2
-    assert "--faces and --export-tolerance round creases off" in few.err
+    assert "few faces round creases off; write the exact patches" in few.err
     assert not (tmp_path / "few.step").exists()
 
 
