@@ -192,10 +192,11 @@ _four_times_curved = _altered(
 
 
 def _from_the_product(_: Callable[..., Any], x: Floats, y: Floats) -> Floats:
-    """The distance as textbooks have it: arccos and arccosh of a product, which lose half of the digits."""
-    straight = np.sqrt(((x - y)[..., 1:] ** 2).sum(axis=-1))
+    """The distance as textbooks have it: arccos and arccosh of a product, a root in the plane; half the digits go."""
     if np.allclose(np.asarray(x)[..., 0], 1) and np.allclose(np.asarray(y)[..., 0], 1):
-        return np.asarray(straight)
+        a, b = np.asarray(x)[..., 1:], np.asarray(y)[..., 1:]
+        square = (a**2).sum(axis=-1) + (b**2).sum(axis=-1) - 2 * (a * b).sum(axis=-1)
+        return np.asarray(np.sqrt(np.maximum(square, 0)))
     on_sphere = np.allclose((np.asarray(x) ** 2).sum(axis=-1), 1)
     product = np.sum(x * y * np.array([1, 1, 1] if on_sphere else [1, -1, -1]), axis=-1)
     return np.asarray(np.arccos(np.minimum(product, 1)) if on_sphere else np.arccosh(np.maximum(product, 1)))

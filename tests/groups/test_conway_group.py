@@ -320,7 +320,11 @@ def closed_surface(geometry, word):
     )
 
 
-test_closed_surfaces_keep_the_laws = contract_tests("group", closed_surface)
+test_closed_surfaces_keep_the_laws = contract_tests(
+    "group",
+    closed_surface,
+    expected_failures={"the_word_is_the_one_asked_for": "the group is that of the surface, whatever its word"},
+)
 
 SINGULAR = ["532", "*332", "3*2", "5x", "4*2", "22x", "*632", "*x", "237", "*237", "2*23"]
 LAWS = [
