@@ -1,6 +1,6 @@
 """The public names of orbiframe.files, each with the module it lives in."""
 
-from .datasets import located as located
+from .datasets import called as called, located as located
 from .destination import (
     require_destination as require_destination,
     require_picture as require_picture,

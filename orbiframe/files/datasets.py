@@ -29,6 +29,12 @@ def located(path: str | Path) -> Path:
     return folder / f"{name}{_SUFFIX}"
 
 
+def called(path: Path) -> str:
+    """The other way: "dataset:NAME" for the file of a dataset, and any other path as it is written."""
+    known = path.suffix == _SUFFIX and path.parent == _folder()
+    return f"{PREFIX}{path.stem}" if known else path.as_posix()
+
+
 def _folder() -> Path:
     """Within an installed package, or beside it in a checkout."""
     package = Path(str(files("orbiframe")))

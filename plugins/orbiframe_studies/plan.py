@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from orbiframe import Config, ConfigError, PluginError, Registry
+from orbiframe.files import called
 from orbiframe.fitting import content_key, file_key, source_key
 from orbiframe_studies.search import suggestions
 from orbiframe_studies.study import Case, Study, Until
@@ -148,7 +149,7 @@ class Plan:
     def _name(self, mesh: Path) -> str:
         """The mesh as it is named in the table: from the folder of the study file on."""
         folder = self.study.file.parent
-        return mesh.relative_to(folder).as_posix() if mesh.is_relative_to(folder) else mesh.as_posix()
+        return mesh.relative_to(folder).as_posix() if mesh.is_relative_to(folder) else called(mesh)
 
     def _mesh_key(self, mesh: Path) -> str:
         if mesh not in self._meshes:

@@ -8,8 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from orbiframe import Config, ConfigError
+from orbiframe import Config, ConfigError, FormatError
 from orbiframe.components import checked_options, did_you_mean, place_of, shown
+from orbiframe.files import located
 from orbiframe.fitting import Overrides, override_items, read_tables
 from orbiframe_studies.study import Case, Search, Settings, Study, Until
 
@@ -82,7 +83,7 @@ def _meshes(patterns: tuple[str, ...], folder: Path, places: Mapping[str, str]) 
     """The files of the patterns: in their order, those of one sorted by name, each once."""
     seen: set[Path] = set()
     for pattern in patterns:
-        found = sorted(glob.glob(str(folder / pattern), recursive=True))
+        found = sorted(glob.glob(str(folder / _located(pattern, places)), recursive=True))
         if not found and not glob.has_magic(pattern):
             siblings = [p.name for p in (folder / pattern).parent.glob("*")]
             near = did_you_mean(Path(pattern).name, siblings)
@@ -94,6 +95,14 @@ def _meshes(patterns: tuple[str, ...], folder: Path, places: Mapping[str, str]) 
             raise ConfigError(f"{place_of('study.meshes', places)}{found[0]} is no regular file; name meshes")
         yield from (path for path in files if path not in seen)
         seen.update(files)
+
+
+def _located(pattern: str, places: Mapping[str, str]) -> Path:
+    """The file of a dataset, dataset:torus and the like; any other pattern as it is."""
+    try:
+        return located(pattern)
+    except FormatError as error:
+        raise ConfigError(f"{place_of('study.meshes', places)}{error}") from error
 
 
 def _flat(table: Mapping[str, Any], title: str, places: Mapping[str, str]) -> Iterator[tuple[str, Any]]:

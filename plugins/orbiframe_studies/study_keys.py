@@ -11,7 +11,7 @@ from orbiframe.fitting import config_schema, config_template, toml_value
 from orbiframe_studies.study import Search, Settings, Until
 
 MEANINGS = {
-    "study.meshes": "files or patterns such as '**/*.obj', relative to this file",
+    "study.meshes": "files or patterns such as '**/*.obj', relative to this file, or datasets such as dataset:torus",
     "study.name": "name of the study; if not given, that of the file",
     "study.seeds": "every fit is done once for each; they go to components with an option seed, and to the noise",
     "study.noise": "normal noise on each coordinate of the vertices, of this size relative to the diagonal of the box",

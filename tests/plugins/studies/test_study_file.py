@@ -47,6 +47,18 @@ def test_patterns_are_sorted_and_a_mesh_counts_once(tmp_path):
     assert [fit.name for fit in fits_of(plan_of(path))] == ["b.off", "a.off", "cube.off"]
 
 
+def test_datasets_are_meshes_by_their_names(tmp_path):
+    path = written(tmp_path, "")
+    text = path.read_text()
+    path.write_text(text.replace('["cube.off"]', '["dataset:torus", "cube.off"]'))
+    fits = fits_of(plan_of(path))
+    assert [fit.name for fit in fits] == ["dataset:torus", "cube.off"]
+    assert fits[0].mesh.is_file()
+    path.write_text(text.replace('["cube.off"]', '["dataset:tors"]'))
+    with pytest.raises(ConfigError, match=r"line 3: there is no dataset 'tors'.* Did you mean 'torus'"):
+        plan_of(path)
+
+
 def test_a_key_is_the_content_and_not_the_words(tmp_path):
     first = fits_of(plan_of(written(tmp_path, "[sweep]\nbasis.width = [1.7, 2.0]")))
     # The default said aloud, under another name, from a copy of the mesh, with numbers written otherwise.
