@@ -28,6 +28,11 @@ CUBE = """OFF
 """
 
 
+def lines_said(error: str) -> list[str]:
+    """The lines of a standard error stream but those that say that work goes on: they hang on the clock."""
+    return [line for line in error.splitlines() if ": at work for " not in line]
+
+
 class Ran(NamedTuple):
     status: int
     out: str

@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from command_line import lines_said
 
 pytestmark = pytest.mark.long
 
@@ -43,7 +44,7 @@ def fitted(installation: Path, name: str) -> tuple[bytes, list[str]]:
     command = [sys.executable, "-c", RUN, *places]
     run = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
-    return (installation / name).read_bytes(), run.stderr.splitlines()
+    return (installation / name).read_bytes(), lines_said(run.stderr)
 
 
 def test_code_lies_in_a_temporary_folder_of_the_user_alone(installation):

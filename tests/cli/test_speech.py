@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from command_line import lines_said
 
 from orbiframe.cli.speech import say
 from orbiframe.components.shown_text import shown
@@ -58,8 +59,7 @@ def test_letters_that_a_stream_has_not_are_escaped(cube: Path, tmp_path: Path, e
     named = tmp_path / "würfel ∂ 立方体.off"
     cube.rename(named)
     ran = run(["fit", named, "-o", tmp_path / "s.ply", *FIT], **environment)
-    said = [line for line in ran.stderr.splitlines() if "at work for" not in line]
-    assert (ran.returncode, said) == (0, [])
+    assert (ran.returncode, lines_said(ran.stderr)) == (0, [])
     assert "angles off by" in ran.stdout
     for arguments in (["info", named], ["info", named, named], ["info", tmp_path / "∂.off"]):
         ran = run(arguments, **environment)
@@ -84,7 +84,7 @@ def test_a_closed_output_cannot_take_a_mesh(cube: Path):
 def test_a_full_output_is_said(cube: Path):
     ran = run(["convert", cube, "-", "-o", "ply"], shell=">/dev/full")
     assert ran.returncode == 1
-    assert ran.stderr.count("\n") == 1
+    assert len(lines_said(ran.stderr)) == 1
     assert "the standard output cannot be written" in ran.stderr
 
 
