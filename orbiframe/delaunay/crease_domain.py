@@ -2,9 +2,8 @@
 
 Sites are spread over the creases and over the faces between them. A piece of a crease between two sites is to be an
 edge of their Delaunay triangulation; where it is none, its middle becomes a site too, and where it has no middle, edges
-are flipped. Then the vertices of the mesh on
-the piece are moved onto the geodesic between its ends, which they are near, so that the crease runs along edges of the
-domain exactly, and no triangle of the mesh lies on both sides.
+are flipped. Then the vertices of the mesh on the piece are moved onto the geodesic between its ends, which they are
+near, so that the crease runs along edges of the domain exactly, and no triangle of the mesh lies on both sides.
 """
 
 from __future__ import annotations

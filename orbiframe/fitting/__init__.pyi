@@ -1,7 +1,13 @@
 """The public names of orbiframe.fitting, each with the module it lives in."""
 
 from .config import Config as Config
-from .config_text import Overrides as Overrides, override_items as override_items, read_tables as read_tables
+from .config_text import (
+    Overrides as Overrides,
+    override_items as override_items,
+    read_tables as read_tables,
+    require_table as require_table,
+    table_of as table_of,
+)
 from .content import content_key as content_key, file_key as file_key, source_key as source_key
 from .kept_maps import KeptMaps as KeptMaps
 from .keys import ConfigKey as ConfigKey, config_keys as config_keys

@@ -14,7 +14,7 @@ from annotated_types import Ge, Gt, Le
 from orbiframe.components.options import Option, checked_options, checked_value, options_of, place_of, require_known
 from orbiframe.components.registry import Registry
 from orbiframe.errors import ConfigError, PluginError, UsageError
-from orbiframe.fitting.config_text import Overrides, override_items, read_tables, require_table
+from orbiframe.fitting.config_text import Overrides, override_items, read_tables, require_table, table_of
 from orbiframe.fitting.limits import require_size
 from orbiframe.plugin import OPEN_NAMES
 
@@ -123,7 +123,7 @@ class Config:
         for table, key, value, place in override_items(overrides):
             places[f"{table}.{key}"] = place
             require_table(table, TABLES, {table: place})
-            tables[table] = {**_table(tables, table, places), key: value}
+            tables[table] = {**table_of(tables, table, places), key: value}
         return cls.from_tables(tables, places=places, folder=Path() if path is None else path.parent)
 
     @classmethod
@@ -135,11 +135,11 @@ class Config:
         for table in tables:
             require_table(table, (*TABLES, "plugins"), places)
         files = checked_value(tuple[str, ...], tables.get("plugins", []), "plugins", places)
-        output = Output(**checked_options(Output, _table(tables, "output", places), "output", places))
-        data = Data(**checked_options(Data, _table(tables, "data", places), "data", places))
+        output = Output(**checked_options(Output, table_of(tables, "output", places), "output", places))
+        data = Data(**checked_options(Data, table_of(tables, "data", places), "data", places))
         if data.creases is not None:
-            tables = {**tables, "basis": {"name": CREASED_BASIS, **_table(tables, "basis", places)}}
-        steps = {table: _step(table, _table(tables, table, places), places) for table in STEPS}
+            tables = {**tables, "basis": {"name": CREASED_BASIS, **table_of(tables, "basis", places)}}
+        steps = {table: _step(table, table_of(tables, table, places), places) for table in STEPS}
         return cls(steps, output, data, tuple(folder / file for file in files), places)
 
     @property
@@ -254,13 +254,6 @@ def _require_creased(name: str, registry: Registry, places: Mapping[str, str]) -
         f"{place_of('basis.name', places)}the functions '{name}' keep no creases (data.creases); those that do: "
         f"{', '.join(known)}"
     )
-
-
-def _table(tables: Mapping[str, Any], name: str, places: Mapping[str, str]) -> Mapping[str, Any]:
-    table = tables.get(name, {})
-    if not isinstance(table, Mapping):
-        raise ConfigError(f"{place_of(name, places)}'{name}' must be a table; write [{name}] above its keys")
-    return table
 
 
 def _step(table: str, given: Mapping[str, Any], places: Mapping[str, str]) -> Step:

@@ -116,3 +116,11 @@ def require_table(name: str, known: Sequence[str], places: Mapping[str, str]) ->
         raise ConfigError(
             f"{place}no table named '{shown(name, 100)}'; allowed: {', '.join(known)}.{did_you_mean(name, known)}"
         )
+
+
+def table_of(tables: Mapping[str, Any], name: str, places: Mapping[str, str]) -> Mapping[str, Any]:
+    """The table of a name, empty if it is not there. Raises ConfigError for another value of that name."""
+    table = tables.get(name, {})
+    if not isinstance(table, Mapping):
+        raise ConfigError(f"{place_of(name, places)}'{name}' must be a table; write [{name}] above its keys")
+    return table

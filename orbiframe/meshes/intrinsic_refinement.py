@@ -110,9 +110,9 @@ def _may_be_halved(length, twin, h):  # type: ignore[no-untyped-def]
 
 @compiled
 def _first(length, twin, fixed, h, short):  # type: ignore[no-untyped-def]
-    """The edge to halve before another one: a fixed one whose middle would be crowded by the new vertex (Ruppert
+    """The edge to halve before another one, itself if there is none (Ruppert 1995).
 
-    1995), that is, which the new vertex sees under an obtuse angle; itself if there is none.
+    It is a fixed edge that the new vertex would crowd: which it sees under an obtuse angle.
     """
     t = twin[h]
     e, x, y, u, v = _unfolded(length, h, t)

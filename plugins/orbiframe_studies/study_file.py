@@ -11,7 +11,7 @@ from typing import Any
 from orbiframe import Config, ConfigError, FormatError
 from orbiframe.components import checked_options, did_you_mean, place_of, shown
 from orbiframe.files import located
-from orbiframe.fitting import Overrides, override_items, read_tables
+from orbiframe.fitting import Overrides, override_items, read_tables, require_table, table_of
 from orbiframe_studies.study import Case, Search, Settings, Study, Until
 
 TABLES = ("study", "sweep", "case", "until", "search")
@@ -30,10 +30,11 @@ def read_study(path: Path, overrides: Overrides = ()) -> Study:
     given = set()
     for table, key, value, place in override_items(overrides):
         places[f"{table}.{key}"] = place
-        tables[table] = {**_mapping(tables, table, places), key: value}
+        tables[table] = {**table_of(tables, table, places), key: value}
         given.add(f"{table}.{key}")
-    _require_tables(tables, places)
-    settings = Settings(**checked_options(Settings, _mapping(tables, "study", places), "study", places))
+    for name in tables:
+        require_table(name, (*TABLES, *Config.NAMES, "plugins"), places)
+    settings = Settings(**checked_options(Settings, table_of(tables, "study", places), "study", places))
     common = {name: value for name, value in tables.items() if name not in TABLES}
     config = Config.from_tables(common, places=places, folder=path.parent)
     study = Study(
@@ -41,7 +42,7 @@ def read_study(path: Path, overrides: Overrides = ()) -> Study:
         settings,
         tuple(_meshes(settings.meshes, path.parent, places)),
         {name: value for name, value in common.items() if name != "plugins"},
-        _sweep(_mapping(tables, "sweep", places), places),
+        _sweep(table_of(tables, "sweep", places), places),
         tuple(_cases(tables.get("case", []), places)),
         _until(tables, places),
         _search(tables, places),
@@ -60,23 +61,6 @@ def with_mapping(tables: Mapping[str, Any], options: Mapping[str, Any]) -> dict[
         table, _, key = name.partition(".")
         found.setdefault(table, {})[key] = value
     return found
-
-
-def _require_tables(tables: Mapping[str, Any], places: Mapping[str, str]) -> None:
-    known = (*TABLES, *Config.NAMES, "plugins")
-    for name in tables:
-        if name not in known:
-            raise ConfigError(
-                f"{place_of(name, places)}no table named '{shown(name, 100)}'; allowed: {', '.join(known)}."
-                f"{did_you_mean(name, known)}"
-            )
-
-
-def _mapping(tables: Mapping[str, Any], name: str, places: Mapping[str, str]) -> Mapping[str, Any]:
-    table = tables.get(name, {})
-    if not isinstance(table, Mapping):
-        raise ConfigError(f"{place_of(name, places)}'{name}' must be a table; write [{name}] above its keys")
-    return table
 
 
 def _meshes(patterns: tuple[str, ...], folder: Path, places: Mapping[str, str]) -> Iterator[Path]:
@@ -164,7 +148,7 @@ def _cases(given: Any, places: Mapping[str, str]) -> Iterator[Case]:
 def _until(tables: Mapping[str, Any], places: Mapping[str, str]) -> Until | None:
     if "until" not in tables:
         return None
-    found = Until(**checked_options(Until, _mapping(tables, "until", places), "until", places))
+    found = Until(**checked_options(Until, table_of(tables, "until", places), "until", places))
     _require_config_key(found.key, "until", places)
     if found.most < found.start:
         raise ConfigError(f"{place_of('until.most', places)}until.most = {found.most} is below the start {found.start}")
@@ -174,7 +158,7 @@ def _until(tables: Mapping[str, Any], places: Mapping[str, str]) -> Until | None
 def _search(tables: Mapping[str, Any], places: Mapping[str, str]) -> Search | None:
     if "search" not in tables:
         return None
-    found = Search(**checked_options(Search, _mapping(tables, "search", places), "search", places))
+    found = Search(**checked_options(Search, table_of(tables, "search", places), "search", places))
     space = dict(_space(found.space, places))
     if not space:
         raise ConfigError(f"{place_of('search', places)}[search] needs a space: basis.width = {{low = 1, high = 3}}")
