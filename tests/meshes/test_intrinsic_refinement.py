@@ -9,12 +9,16 @@ from fitted import REGISTRY, config
 from hypothesis import given, settings, strategies as st
 
 from orbiframe.fitting import pipeline
+from orbiframe.fitting.config import Config
+from orbiframe.fitting.mapping import Mapping
+from orbiframe.fitting.stages import Stages
+from orbiframe.functions.smooth_samples import vertex_samples
 from orbiframe.meshes.bending import SHARP, bending
 from orbiframe.meshes.bisection import bisected, even_edge_length
 from orbiframe.meshes.edge_log import EdgeLog
 from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.meshes.flat_flips import flat_flips
-from orbiframe.meshes.intrinsic_refinement import intrinsic_refinement
+from orbiframe.meshes.intrinsic_refinement import _may_be_halved, intrinsic_refinement
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.surface_type import surface_type
 from orbiframe.testing.polyhedra import reference_polyhedra
@@ -33,6 +37,17 @@ def fan(count: int, height: float = 1.0) -> Polyhedron:
     lower = np.stack([after, ring, np.full(count, count + 1)], axis=1)
     tips = [[0, 0, height], [0, 0, -height]]
     return Polyhedron.from_faces(np.concatenate([rim, tips]), np.concatenate([upper, lower]))
+
+
+def accordion(folds: int) -> Polyhedron:
+    """A bar of length 1 whose top is folded: needles between sharp edges."""
+    top = [(k / folds, 0.3 + 0.02 * (k % 2)) for k in range(folds, -1, -1)]
+    outline = np.array([*top, (0.0, 0.0), (1.0, 0.0)])
+    count = len(outline)
+    ring, after = np.arange(count), np.roll(np.arange(count), -1)
+    sides = np.stack([ring, after, count + after, count + ring], axis=1).tolist()
+    vertices = np.concatenate([np.insert(outline, 2, z, axis=1) for z in (0.0, 1.0)])
+    return triangulated(Polyhedron.from_faces(vertices, [*sides, ring[::-1].tolist(), (count + ring).tolist()]))
 
 
 def refined(mesh: Polyhedron, longest: float, most: int = 100_000) -> EdgeLog:
@@ -157,6 +172,54 @@ def test_vertices_do_not_grow_with_the_needles() -> None:
 
 def test_no_more_edges_are_halved_than_allowed() -> None:
     assert refined(fan(100), 0.01, 50).halved.sum() == 50
+
+
+def test_sharp_edges_that_would_be_crowded_are_halved_first() -> None:
+    """Without that, on 500 folds, 12,700 vertices and edges a fourth as long."""
+    mesh = accordion(500)
+    longest = even_edge_length(mesh, 6000)
+    after = refined(mesh, longest).after
+    assert len(after.vertices) < 11_000
+    assert after.edge_lengths.min() > 0.04 * longest
+
+
+def test_an_edge_with_a_corner_in_its_middle_stays() -> None:
+    """Of lengths 2, 1 and 1 on one side: its halves would have a triangle of no size."""
+    twin = np.array([3, 6, 7, 0, 8, 9, 1, 2, 4, 5])
+    for height, may in ((1e-12, False), (1e-3, True), (1.0, True)):
+        slanted = np.hypot(1, height)
+        length = np.array([2.0, slanted, slanted, 2.0, 2.0, 2.0])
+        assert _may_be_halved(length, twin, 0) == may
+
+
+def test_nothing_is_done_where_a_triangle_meets_itself() -> None:
+    """Two cones with a common loop."""
+    tail, twin = np.array([0, 1, 0, 0, 2, 0]), np.array([1, 0, 5, 4, 3, 2])
+    cones = Polyhedron(np.eye(3), np.array([0, 3, 6]), tail, twin, np.zeros(6, dtype=np.bool_))
+    log = EdgeLog(cones, np.empty((0, 2), dtype=np.intp), np.empty((0, 2)))
+    assert intrinsic_refinement(log, 0.1, 100) is log
+
+
+def test_only_the_vertices_of_the_file_are_points_of_a_smooth_shape() -> None:
+    """Those that refinement adds to its needles lie on chords; they ask for fairness alone."""
+    mesh = fan(400)
+    log = refined(mesh, 0.2)
+    fine = bisected(mesh, 0.2, True, log)
+    made = REGISTRY.load("parametrizer", "sphere")(fine.polyhedron, REGISTRY.geometry(2), None)
+    assert len(fine.facets.vertices) > len(mesh.vertices) + 200
+    samples = vertex_samples(made, fine)
+    assert (samples.weights > 0).sum() == len(mesh.vertices)
+    np.testing.assert_array_equal(samples.values[samples.weights > 0], mesh.vertices)
+
+
+def test_bisection_after_the_log_is_affordable() -> None:
+    """A part whose folds are all sharp is not cut without bounds: the edges may be longer then."""
+    mesh, wanted = accordion(500), 50
+    mapping = Mapping(mesh, mesh, surface_type(mesh), Config.load(), Stages(REGISTRY, lambda *_: None))
+    longest = even_edge_length(mapping.facets, wanted) / 8
+    made = mapping._refined(longest, wanted).polyhedron
+    assert made.edge_lengths.max() > 2 * longest
+    assert made.face_count <= 3 * (20 * wanted + mapping.facets.face_count)
 
 
 def test_a_bisection_after_the_log_finds_points_and_origins() -> None:
