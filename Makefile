@@ -5,7 +5,7 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: demo warm-up test quick lowest fresh lint mutants constraints clean
+.PHONY: demo warm-up test quick lowest fresh lint docs mutants constraints clean
 
 demo: $(VENV)/warm  ## one smooth surface from a mesh of genus 2
 	$(BIN)/orbiframe fit datasets/plate_genus2.off -o plate_genus2_smooth.ply
@@ -32,6 +32,10 @@ lint: $(VENV)/developer  ## style, types, and who imports whom
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+docs: $(VENV)/developer  ## the site in build/site, without a warning and without a network
+	$(BIN)/python -m sphinx --fail-on-warning --fresh-env --quiet -c docs -d build/doctrees . build/site
+	@echo "build/site/index.html"
 
 mutants: $(VENV)/developer  ## faults planted one at a time, and which of them no test notices
 	$(BIN)/python benchmarks/mutants.py
