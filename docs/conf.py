@@ -1,8 +1,8 @@
 """The site: `make docs` makes it from the pages as they are, in `build/site`; decision 39 says why so.
 
-The folder of sources is that of the repository, so that links between the pages, the readme and the changes are the same
-here and there. What a reader of a page would not want to see in it is added here: the tree of pages, the names of files
-as captions, and the texts of the public names.
+The folder of sources is that of the repository, so that links between the pages, the readme and the changes are the
+same here and there. What a reader of a page would not want to see in it is added here: the tree of pages, the names of
+files as captions, and the texts of the public names.
 """
 
 from __future__ import annotations
@@ -61,8 +61,9 @@ def read(_: Sphinx, name: str, source: list[str]) -> None:
     source[0] += trees(name)
 
 
-def plain(_: Sphinx, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
-    """Docstrings are plain text: no character in them but the backtick is a mark."""
+def plain(*given: Any) -> None:
+    """Docstrings are plain text: no character in them but the backtick is a mark; they come last of what is given."""
+    lines: list[str] = given[-1]
     lines[:] = [line if line.lstrip().startswith((">>>", "...")) else escaped(line) for line in lines]
 
 

@@ -42,6 +42,11 @@ class Component:
     suffixes: file suffixes with their dot, lower case (kinds that read or make files only); welds: whether every face
     has corners of its own in the file, of which the reader joins the equal ones; meanings: what each option means, by
     its name, for the reference, the schema and the commented default of configurations.
+
+    >>> from orbiframe import Component, hookimpl
+    >>> @hookimpl
+    ... def orbiframe_components():
+    ...     return [Component("basis", "bells", "bells.basis:Bells", "bumps (1 - t)^3")]
     """
 
     kind: str

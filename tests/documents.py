@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import importlib.util
 import re
 from pathlib import Path
+from types import ModuleType
 from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
@@ -72,3 +74,13 @@ def table_rows(text: str) -> list[list[str]]:
     rules = [i for i, row in enumerate(rows) if set("".join(row)) <= set("-: ")]
     skipped = {i for rule in rules for i in (rule - 1, rule)}
     return [row for i, row in enumerate(rows) if i not in skipped]
+
+
+def module_of(script: Path) -> ModuleType:
+    """The module that a script of the documentation is."""
+    spec = importlib.util.spec_from_file_location(script.stem, script)
+    assert spec
+    assert spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module

@@ -38,7 +38,13 @@ class Option:
 
 
 def options_of(target: Callable[..., Any]) -> list[Option]:
-    """The options of a class or function, read off its signature, in its order."""
+    """The options of a class or function, read off its signature, in its order.
+
+    >>> from orbiframe import Registry
+    >>> from orbiframe.components import options_of
+    >>> [(o.name, o.default) for o in options_of(Registry.discover().load("fitter", "sliding"))]
+    [('fairing', None), ('steps', 5)]
+    """
     keywords = [p for p in inspect.signature(target).parameters.values() if p.kind is inspect.Parameter.KEYWORD_ONLY]
     return [Option(p.name, _evaluated(p.annotation, target), p.default) for p in keywords]
 

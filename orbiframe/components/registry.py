@@ -40,6 +40,14 @@ class Registry:
     orbiframe's own component where it has one; that of another plugin is asked for as "plugin:name". A registry can be
     pickled: what arrives elsewhere has the same plugins, loaded there again, and the same plugin files, which must be
     there too.
+
+    >>> from orbiframe import Registry
+    >>> registry = Registry.discover()
+    >>> [component.name for component in registry.components("geometry")]
+    ['e2', 'h2', 's2']
+    >>> h2 = registry.load("geometry", "h2")()
+    >>> h2.curvature
+    -1
     """
 
     def __init__(self) -> None:

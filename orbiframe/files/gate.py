@@ -59,6 +59,10 @@ def read(
     wrong with it or with the polyhedron in it: a coordinate that is not finite, an index out of range, a face of fewer
     than three different vertices, no face at all. Whatever a reader raises, the end of the process included, becomes a
     FormatError. Raises UsageError for an unknown format or option, PluginError where the reader cannot be imported.
+
+    >>> from orbiframe import read
+    >>> read("dataset:cube")
+    <Polyhedron: 8 vertices, 12 edges, 6 faces>
     """
     path = located(path)
     require_readable(path, size_limit)
@@ -81,6 +85,14 @@ def write(
     The file appears whole or not at all: it is made in a folder beside its place and then moved. Raises FormatError,
     naming the file, where the polyhedron or the place is unfit or the writer fails; UsageError and PluginError as in
     `read`.
+
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from orbiframe import read, write
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write(Path(folder) / "cube.ply", read("dataset:cube"))
+    ...     read(Path(folder) / "cube.ply").face_count
+    6
     """
     path = Path(path)
     mesh = require_sound(_mesh(polyhedron, path), path)

@@ -98,6 +98,17 @@ def save_surface(surface: OrbifoldSurface, path: Path) -> None:
     It holds the mesh, the map, the coefficients, and the name and options of the basis, which is built anew from them
     when loaded: the same input gives the same basis. A check sum of each array goes with them. Raises FormatError where
     the file cannot be written.
+
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from orbiframe import fit, load_surface, save_surface
+    >>> surface = fit("dataset:torus", size=60).surface
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     save_surface(surface, Path(folder) / "torus.npz")
+    ...     again = load_surface(Path(folder) / "torus.npz")
+    >>> points = surface.points([3], [[0.2, 0.3, 0.5]])
+    >>> bool((again.evaluate(points) == surface.evaluate(points)).all())
+    True
     """
     arrays = _arrays(surface)
     about = _about(surface)

@@ -12,7 +12,7 @@ from .content import content_key as content_key, file_key as file_key, source_ke
 from .kept_maps import KeptMaps as KeptMaps
 from .keys import ConfigKey as ConfigKey, config_keys as config_keys
 from .parts import Parts as Parts, fit_parts as fit_parts
-from .pipeline import fit as fit
+from .pipeline import Result as Result, fit as fit
 from .report import versions as versions
 from .schema import config_schema as config_schema
 from .template import config_template as config_template, toml_value as toml_value

@@ -90,6 +90,11 @@ class Config:
     parametrizer that fits the geometry and the group; shape: changes the map so that faces become regular, "none"
     leaves it as it is; basis; fitter.
     places: where each "table.key" was written, for error messages. NAMES: of all tables.
+
+    >>> from orbiframe import Config
+    >>> config = Config.load(overrides={"basis": {"name": "ps2", "size": 200}})
+    >>> config.basis.name, config.basis.options["size"], config.map.name
+    ('ps2', 200, 'auto')
     """
 
     NAMES: ClassVar[tuple[str, ...]] = TABLES

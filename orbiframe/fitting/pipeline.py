@@ -38,7 +38,16 @@ _OUTPUT_FACES = 40_000
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Result(GivenBack):
-    """What a fit returns: the surface, a mesh on it with normals, and the report of all steps as plain data."""
+    """What a fit returns: the surface, a mesh on it with normals, and the report of all steps as plain data.
+
+    >>> from orbiframe import fit
+    >>> result = fit("dataset:sphere", size=60)
+    >>> result.report["fit"]["rms"] < 1e-2
+    True
+    >>> mesh = result.to_meshio()
+    >>> len(mesh.points) == len(result.output.vertices)
+    True
+    """
 
     surface: OrbifoldSurface
     output: Polyhedron
@@ -67,6 +76,13 @@ def fit(
     the command line; a table by its name, `basis="ps2"` or `fitter={"name": "smoothing", "fairing": 1e-3}`. Raises
     FormatError, TopologyError, MapError, FitError or ConfigError, each a sentence with a next step, and UsageError for
     an unknown keyword or what is no mesh.
+
+    >>> import orbiframe
+    >>> result = orbiframe.fit("dataset:torus", size=60)
+    >>> result.report["surface"]["euler_characteristic"]
+    0
+    >>> len(result.output.normals) == len(result.output.vertices)
+    True
     """
     config = configured(config, settings)
     registry = registry_for(config) if registry is None else registry

@@ -26,6 +26,14 @@ class Basis(ABC):
     smoothness: the number of continuous derivatives (math.inf for C^infinity). crease_unknowns: how many unknowns a
     vertex, an edge and a triangle of the domain have, for functions that may be only continuous across the creases of
     a triangulation that has some; None for functions that keep none.
+
+    >>> import numpy as np
+    >>> from orbiframe import fit
+    >>> surface = fit("dataset:torus", basis={"name": "ps2", "size": 60}).surface
+    >>> points = surface.points([0, 1], [[1, 0, 0], [0, 1, 0]])
+    >>> rows = surface.basis.design_matrix(points)
+    >>> rows.shape == (2, surface.basis.size), np.allclose(rows.sum(axis=1), 1)
+    (True, True)
     """
 
     orbifold: Orbifold

@@ -31,6 +31,13 @@ class FundamentalPolygon:
     geometry; vertices: (n, 3), counterclockwise; word: n letters, letter p is the side from vertex p to vertex p + 1.
     The side pairing h_s maps the mate s' to s, so that F and h_s F meet in s. Raises GeometryError for another number
     of vertices, or a polygon that is not convex round the origin.
+
+    >>> import numpy as np
+    >>> from orbiframe import Registry, Word
+    >>> from orbiframe.groups import regular_polygon
+    >>> octagon = regular_polygon(Registry.discover().load("geometry", "h2")(), Word.parse("abABcdCD"))
+    >>> print(np.degrees(octagon.interior_angles).round(9)[0], (octagon.area / np.pi).round(9))
+    45.0 4.0
     """
 
     geometry: Geometry

@@ -20,6 +20,16 @@ class Group(ABC):
     """A discrete group of isometries that acts freely, with a polygon F round the origin whose sides a word glues.
 
     geometry; word: its letters name the generators, letter a the pairing of the first side marked a; area: of X/H.
+
+    >>> from orbiframe import Registry, Word
+    >>> registry = Registry.discover()
+    >>> h2 = registry.load("geometry", "h2")()
+    >>> group = registry.load("group", "regular-polygon")(h2, Word.parse("abABcdCD"))
+    >>> len(group.tiles(3.2)), len(group.tiles(5.2))  # the octagon itself, and those about it
+    (9, 49)
+    >>> g = group.element("abABcdCD")  # letters that go once round the polygon
+    >>> g.shape
+    (3, 3)
     """
 
     geometry: Geometry

@@ -39,6 +39,15 @@ class Polyhedron:
     normals (V, 3), colors (V, 3 or 4) and face_colors (F, 3 or 4), colours from 0 to 1; unit, that of the coordinates:
     "millimetre" or "metre"; corner_normals (H, 3), of every corner of every face, where they are not those of the
     vertices: beside creases.
+
+    >>> import numpy as np
+    >>> from orbiframe import Polyhedron
+    >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> mesh = Polyhedron.of((np.array(corners), [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]))
+    >>> mesh
+    <Polyhedron: 4 vertices, 6 edges, 4 faces>
+    >>> print(mesh.next[0], mesh.head[0], mesh.twin[mesh.twin[0]])  # of the halfedge from vertex 0 to 2
+    1 2 0
     """
 
     vertices: Floats

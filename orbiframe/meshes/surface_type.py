@@ -19,6 +19,10 @@ class SurfaceType:
     """What a polyhedron is as an abstract surface.
 
     genus: handles of a closed connected orientable surface, crosscaps of a nonorientable one, None for anything else.
+
+    >>> from orbiframe import read, surface_type
+    >>> surface_type(read("dataset:three_crosscaps"))
+    SurfaceType(euler_characteristic=-1, orientable=False, closed=True, components=1, genus=3)
     """
 
     euler_characteristic: int
@@ -43,6 +47,12 @@ def surface_type(polyhedron: object) -> SurfaceType:
 
     Vertices in no face do not count. Linear in the number of halfedges, up to one sort. polyhedron: or what
     `Polyhedron.of` takes.
+
+    >>> from orbiframe import read, surface_type
+    >>> surface_type(read("dataset:plate_genus2")).genus
+    2
+    >>> surface_type(read("dataset:klein_bottle")).orientable
+    False
     """
     polyhedron = Polyhedron.of(polyhedron)
     components, sheets, _ = _face_sheets(polyhedron)

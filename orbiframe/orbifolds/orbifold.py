@@ -45,6 +45,12 @@ class Orbifold:
     """X/H, a closed surface or orbifold: its patches, its Euler characteristic, whether it is orientable, its area.
 
     area: 2 pi |euler_characteristic| in S^2 and H^2 (Gauss-Bonnet), the area of a fundamental domain in E^2.
+
+    >>> import numpy as np
+    >>> from orbiframe import fit
+    >>> orbifold = fit("dataset:three_crosscaps", size=60).surface.orbifold
+    >>> orbifold.euler_characteristic, orbifold.orientable, round(orbifold.area / np.pi, 12)
+    (-1, False, 2.0)
     """
 
     atlas: Atlas

@@ -20,6 +20,16 @@ class Geometry(ABC):
     Points are rows (..., 3), leading axes broadcast: S^2 is |x| = 1, E^2 is x0 = 1, H^2 is x0^2 - x1^2 - x2^2 = 1 with
     x0 > 0. Isometries are matrices (..., 3, 3) that act on column vectors from the left. Tangent vectors are ambient,
     (..., 3). Angles are radians, lengths are in units of curvature +1 or -1 (E^2: free).
+
+    >>> import numpy as np
+    >>> from orbiframe import Registry
+    >>> h2 = Registry.discover().load("geometry", "h2")()
+    >>> step = h2.translation(0.75)
+    >>> there = h2.act(step @ step, h2.origin)
+    >>> print(round(float(h2.distance(h2.origin, there)), 12))
+    1.5
+    >>> h2.classify(step), h2.classify(h2.rotation(0.3))
+    ('translation', 'rotation')
     """
 
     name: str

@@ -71,6 +71,16 @@ def fit_field(
     smoothed; basis: functions on the same X/H, by default those of the surface. Fairness is asked for all over the
     surface and in its metric, so that few data are joined without ripples. Raises FitError for shapes that do not fit,
     for values that are not finite, and where the fitter does.
+
+    >>> import numpy as np
+    >>> from orbiframe import fit
+    >>> surface = fit("dataset:torus", size=100).surface
+    >>> t = np.linspace(0, 20, 60)
+    >>> places = np.column_stack([np.cos(t) + 0.4 * np.cos(t), np.sin(t) + 0.4 * np.sin(t), 0 * t])
+    >>> field = surface.fit_field(places, np.full(60, 3.0))  # few data are joined calmly
+    >>> points = surface.points([0, 5], [[1, 0, 0], [0, 1, 0]])
+    >>> print(field.evaluate(points).ravel().round(6))
+    [3. 3.]
     """
     basis = surface.basis if basis is None else basis
     if isinstance(points, Points):

@@ -48,6 +48,14 @@ def principal_curvature(surface: OrbifoldSurface, points: Points) -> PrincipalCu
     second form is L^-1 B L^-T with the rows (a, 0), (b, c) of L and the entries B of normal parts of the covariant
     Hessian. Raises FitError for a basis without derivatives. Where the surface is not immersed, the numbers are not
     finite.
+
+    >>> from orbiframe import fit
+    >>> from orbiframe.surfaces import nearest_points, principal_curvature
+    >>> surface = fit("dataset:torus", size=300).surface
+    >>> points, _ = nearest_points(surface, [[1.4, 0, 0]])
+    >>> found = principal_curvature(surface, points)
+    >>> print(found.most.round(1), found.least.round(1))  # 1 / 1.4 and 1 / 0.4; outward normals make both negative
+    [-0.7] [-2.5]
     """
     jet = surface.jet(points)
     with np.errstate(all="ignore"):

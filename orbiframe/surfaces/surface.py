@@ -75,6 +75,17 @@ class OrbifoldSurface:
     input; basis and coefficients (size, 3): the functions; origin (3,) and scale: a value v is the point
     origin + scale * v, so that the coefficients belong to a mesh of unit size at the origin. basis_name and
     basis_options: the component that made the basis, and its options, from which a saved surface makes it again.
+
+    >>> import numpy as np
+    >>> from orbiframe import fit
+    >>> surface = fit("dataset:torus", size=100).surface
+    >>> points = surface.points([0, 7], np.array([[1, 1, 1], [0, 1, 2]]) / 3)  # in triangles, barycentric
+    >>> surface.evaluate(points).shape, surface.normals(points).shape
+    ((2, 3), (2, 3))
+    >>> abs(surface.total_curvature()) < 1e-3  # 2 pi times the Euler characteristic
+    True
+    >>> print(surface.distance([[1.5, 0, 0]]).round(2))  # the torus has the radii 1 and 0.4
+    [0.1]
     """
 
     triangulation: Triangulation

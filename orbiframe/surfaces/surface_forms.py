@@ -29,6 +29,13 @@ class SurfaceForms:
 
     points: n Gauss points; weights: (n,), the area of each; metric: (n, 3), the entries 11, 12 and 22 of the inverse of
     the first fundamental form there, in the frames of X.
+
+    >>> import numpy as np
+    >>> from orbiframe import fit
+    >>> from orbiframe.surfaces import SurfaceForms
+    >>> forms = SurfaceForms.of(fit("dataset:torus", size=300).surface)
+    >>> print(round(forms.area / (1.6 * np.pi**2), 3))  # the area of the torus with the radii 1 and 0.4
+    1.0
     """
 
     basis: DifferentiableBasis

@@ -32,6 +32,13 @@ class Triangulation:
     should be per length at each vertex beyond what the map alone asks for, up to a factor; None: the same everywhere.
     crease: (H,), the halfedges of creases, across which functions are only continuous; sites: (n,), the vertices that
     the domain of splines then has, between which creases run along geodesics; None for none.
+
+    >>> from orbiframe import fit
+    >>> map_to_x = fit("dataset:plate_genus2_coarse", size=60).surface.triangulation
+    >>> map_to_x.not_positive  # no triangle is folded
+    0
+    >>> abs(map_to_x.area_defect) < 1e-9  # their areas add up to that of X/H
+    True
     """
 
     orbifold: Orbifold

@@ -56,6 +56,11 @@ class ConwaySymbol:
     corners, where two mirrors meet at the angle pi / m, in the order along it. Raises TopologyError for an order below
     2, and for the bad orbifolds, which no plane covers: one cone point, or two that differ, alone on a sphere or a
     disc.
+
+    >>> from orbiframe.words import ConwaySymbol
+    >>> symbol = ConwaySymbol.parse("*237")  # the triangle with the angles pi/2, pi/3 and pi/7
+    >>> symbol.euler_characteristic, symbol.curvature
+    (Fraction(-1, 84), -1)
     """
 
     handles: int = 0

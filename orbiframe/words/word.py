@@ -21,6 +21,13 @@ class Word:
     arrows: a positive letter has its arrow counterclockwise, a negative letter clockwise. So `abAB` is a torus, `aabb`
     and `abaB` are Klein bottles. letters: nonzero integers, letter k or its inverse -k, each label twice. Raises
     TopologyError for a label that does not occur exactly twice.
+
+    >>> from orbiframe import Word
+    >>> word = Word.parse("abABcdCD")  # the octagon of genus 2
+    >>> word.euler_characteristic, word.orientable, len(word.vertex_cycles)
+    (-2, True, 1)
+    >>> Word.parse("aabb").orientable
+    False
     """
 
     letters: tuple[int, ...]
@@ -151,6 +158,10 @@ def standard_word(euler_characteristic: int, orientable: bool) -> Word:
     """The standard word of a closed surface: `aA`, `abABcdCD...` (g handles) or `aabbcc...` (g crosscaps).
 
     Raises TopologyError if no closed surface has this Euler characteristic.
+
+    >>> from orbiframe.words import standard_word
+    >>> print(standard_word(-2, True), standard_word(-1, False))
+    abABcdCD aabbcc
     """
     deficit = 2 - euler_characteristic
     if deficit < 0 or (orientable and deficit % 2) or not (orientable or deficit):
@@ -189,7 +200,12 @@ def inverse_letters(letters: Iterable[int]) -> tuple[int, ...]:
 
 
 def reduced_letters(letters: Iterable[int]) -> tuple[int, ...]:
-    """The letters without neighbours that cancel (free reduction)."""
+    """The letters without neighbours that cancel (free reduction).
+
+    >>> from orbiframe.words import reduced_letters
+    >>> reduced_letters((1, 2, -2, 3))
+    (1, 3)
+    """
     kept: list[int] = []
     for letter in letters:
         if kept and kept[-1] == -letter:

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import importlib.util
 from pathlib import Path
 
-from documents import ROOT
+from documents import ROOT, module_of
 
 MAKER = ROOT / "docs" / "reference" / "make_python.py"
 CONFIG_MAKER = MAKER.with_name("make_config.py")
+COMPONENT_MAKER = MAKER.with_name("make_components.py")
 
 
 def made(maker: Path = MAKER) -> str:
-    spec = importlib.util.spec_from_file_location(maker.stem, maker)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module.page()
+    return module_of(maker).page()
 
 
 def test_the_page_is_what_the_facades_say():
@@ -24,6 +21,11 @@ def test_the_page_is_what_the_facades_say():
 
 def test_the_page_of_configurations_is_what_the_components_say():
     assert CONFIG_MAKER.with_name("config.md").read_text() == made(CONFIG_MAKER), "run docs/reference/make_config.py"
+
+
+def test_the_page_of_components_is_what_the_registry_says():
+    shown = COMPONENT_MAKER.with_name("components.md").read_text()
+    assert shown == made(COMPONENT_MAKER), "run docs/reference/make_components.py"
 
 
 def test_every_public_name_says_what_it_is():
