@@ -36,7 +36,7 @@ class FundamentalPolygon:
     >>> from orbiframe import Registry, Word
     >>> from orbiframe.groups import regular_polygon
     >>> octagon = regular_polygon(Registry.discover().load("geometry", "h2")(), Word.parse("abABcdCD"))
-    >>> print(np.degrees(octagon.interior_angles).round(9)[0], (octagon.area / np.pi).round(9))
+    >>> print(np.degrees(octagon.interior_angles[0]).round(9), round(octagon.area / np.pi, 9))
     45.0 4.0
     """
 

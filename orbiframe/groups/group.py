@@ -25,8 +25,8 @@ class Group(ABC):
     >>> registry = Registry.discover()
     >>> h2 = registry.load("geometry", "h2")()
     >>> group = registry.load("group", "regular-polygon")(h2, Word.parse("abABcdCD"))
-    >>> len(group.tiles(3.2)), len(group.tiles(5.2))  # the octagon itself, and those about it
-    (9, 49)
+    >>> len(group.tiles(1.5)), len(group.tiles(2.5))  # that meet a disc: the octagon alone; with all that touch it
+    (1, 49)
     >>> g = group.element("abABcdCD")  # letters that go once round the polygon
     >>> g.shape
     (3, 3)
