@@ -30,6 +30,7 @@ OPEN_NAMES = ("auto", "mesh", "none")
 DEFAULT_MARKER = "tree-cotree"
 
 hookspec = pluggy.HookspecMarker("orbiframe")
+# Marks the hooks of a plugin: write `@hookimpl` above each function whose name is that of a hook of this module.
 hookimpl = pluggy.HookimplMarker("orbiframe")
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import re
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
@@ -39,10 +40,30 @@ def names_of(facade: str) -> list[str]:
     return sorted((alias.name for node in imports for alias in node.names), key=lambda name: (name.islower(), name))
 
 
+def text_of(facade: str, name: str) -> str:
+    """What a name says of itself: the docstring of a class or function, the comment above anything else."""
+    thing = getattr(import_module(facade), name)
+    if inspect.isclass(thing) or inspect.isroutine(thing) or inspect.ismodule(thing):
+        return inspect.getdoc(thing) or ""
+    lines = source_of(facade, name).read_text(encoding="utf-8").splitlines()
+    at = next(k for k, line in enumerate(lines) if re.match(rf"{name}\b.*=", line))
+    first = at
+    while lines[first - 1].startswith("# "):
+        first -= 1
+    return " ".join(line.removeprefix("# ") for line in lines[first:at])
+
+
+def source_of(facade: str, name: str) -> Path:
+    """The file from which a facade takes a name."""
+    folder = KERNEL.joinpath(*facade.split(".")[1:])
+    nodes = ast.parse((folder / "__init__.pyi").read_text()).body
+    found = (node for node in nodes if isinstance(node, ast.ImportFrom) and name in {a.name for a in node.names})
+    return folder.joinpath(*(next(found).module or "").split(".")).with_suffix(".py")
+
+
 def summary(facade: str, name: str) -> str:
     """The first sentence of what a name says of itself."""
-    text = inspect.getdoc(getattr(import_module(facade), name)) or ""
-    first = " ".join(text.split("\n\n")[0].split())
+    first = " ".join(text_of(facade, name).split("\n\n")[0].split())
     return first.replace("|", "\\|")
 
 

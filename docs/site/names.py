@@ -12,7 +12,7 @@ DOCS = Path(__file__).parents[1]
 FOLDER = DOCS / "reference" / "names"
 sys.path[:0] = [str(DOCS / "reference")]
 
-from make_python import facades, names_of  # noqa: E402
+from make_python import facades, names_of, text_of  # noqa: E402
 
 
 def directive(facade: str, name: str) -> str:
@@ -20,8 +20,17 @@ def directive(facade: str, name: str) -> str:
     thing = getattr(import_module(facade), name)
     if isclass(thing):
         bases = "   :show-inheritance:\n" if issubclass(thing, Exception) else ""
-        return f".. autoclass:: {facade}.{name}\n   :members:\n{bases}"
-    return f".. auto{'function' if isroutine(thing) else 'data'}:: {facade}.{name}\n"
+        return f".. autoclass:: {facade}.{name}\n   :members:\n{bases}{hidden_bases(thing)}"
+    if isroutine(thing):
+        return f".. autofunction:: {facade}.{name}\n"
+    return f".. py:data:: {facade}.{name}\n\n   {text_of(facade, name)}\n"
+
+
+def hidden_bases(thing: type) -> str:
+    """What is inherited from classes of the project that have no page is told here."""
+    public = {name for facade in facades() for name in names_of(facade)}
+    own = [base for base in thing.__mro__[1:] if base.__module__.startswith("orbiframe")]
+    return "   :inherited-members:\n" if any(base.__name__ not in public for base in own) else ""
 
 
 def lines(facade: str) -> Iterator[str]:

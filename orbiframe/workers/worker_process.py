@@ -16,6 +16,7 @@ from typing import Any, BinaryIO
 
 from orbiframe.compiled import compilation
 
+# The word that a worker says in place of a stage while it compiles.
 COMPILING = "compiling"
 Tell = Callable[[str, float | None], None]
 Task = Callable[[Any, Tell], Any]
