@@ -43,6 +43,7 @@ html_css_files = ["wide.css"]
 html_extra_path = ["site/start"]
 html_copy_source = False
 html_show_sphinx = False
+html_show_copyright = False
 copybutton_prompt_text = r"\$ |>>> |\.\.\. "
 copybutton_prompt_is_regexp = True
 copybutton_only_copy_prompt_lines = True
