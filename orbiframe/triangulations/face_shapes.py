@@ -43,6 +43,11 @@ class FaceShapes:
             share = self.area / self.area.mean()
             return np.where(share > 0, np.maximum(share, 1 / share), np.inf)
 
+    def first(self, count: int) -> FaceShapes:
+        """Those of the first faces."""
+        tables = (self.corners, self.angle, self.adjacent, self.opposite, self.area)
+        return FaceShapes(*(table[:count] for table in tables))
+
     def summary(self) -> dict[str, Any]:
         """Median, 95th percentile, maximum and the worst face of each measure; angles in degrees, None for no face."""
         measures = {
