@@ -17,6 +17,8 @@ from orbiframe.triangulations.triangulation import Triangulation
 SMOOTH, SEMI_SMOOTH, FACETS = "smooth", "semi-smooth", "facets"
 # Which facets beside creases stand for something curved.
 _CURVED: dict[str, Literal["none", "bent", "all"]] = {FACETS: "none", SEMI_SMOOTH: "bent", SMOOTH: "all"}
+
+
 MEANINGS = ("auto", SMOOTH, SEMI_SMOOTH, FACETS)
 
 # Up to this share of its bending in sharp edges a mesh is taken for smooth, from the other one on for its facets.
@@ -47,7 +49,7 @@ class Meaning(NamedTuple):
         own = area if triangulation.inside is None else area[inside_facets(triangulation, refinement)]
         spacing = float(own.sum() / size) ** 0.5
         found = self._inside(triangulation, refinement, size, spacing, noise)
-        return with_border(found, triangulation, refinement, spacing, smooth=self.smooth)
+        return with_border(found, triangulation, refinement, spacing, arcs=_CURVED[self.name])
 
     def _inside(
         self, triangulation: Triangulation, refinement: Bisection, size: int, spacing: float, noise: float | None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,20 +24,28 @@ _STRAIGHT, _CORNER = np.radians(3), np.radians(40)
 
 
 def with_border(
-    samples: Samples, triangulation: Triangulation, refinement: Bisection, spacing: float, *, smooth: bool
+    samples: Samples,
+    triangulation: Triangulation,
+    refinement: Bisection,
+    spacing: float,
+    *,
+    arcs: Literal["none", "bent", "all"],
 ) -> Samples:
     """The samples of a mesh and those of its boundary, which are held; the same samples where it is closed.
 
     At the vertices of the refined mesh and the middles between them (Simpson's rule), weighted by length times the
-    spacing of functions; less where the boundary is an arc, of which vertices of the mesh alone are true. smooth: those
-    alone count anywhere.
+    spacing of functions. arcs: which edges stand for arcs, of which vertices of the mesh alone are true: "none", "all",
+    or "bent", those that turn by 3 to 40 degrees, the more the higher the arc over them is.
     """
     if not len(triangulation.border):
         return samples
-    given = _at_vertices(triangulation, refinement, spacing)
-    if smooth:
-        return _joined(samples, given)
-    return _joined(samples, _joined(_along(triangulation, refinement, spacing), given))
+    if arcs == "none":
+        return _joined(samples, _along(triangulation, refinement, spacing, np.ones(len(triangulation.border))))
+    given = _joined(samples, _at_vertices(triangulation, refinement, spacing))
+    if arcs == "all":
+        return given
+    straight = _straight(triangulation, refinement, spacing)
+    return _joined(given, _along(triangulation, refinement, spacing, straight))
 
 
 def _at_vertices(triangulation: Triangulation, refinement: Bisection, spacing: float) -> Samples:
@@ -53,11 +61,10 @@ def _at_vertices(triangulation: Triangulation, refinement: Bisection, spacing: f
     return _held(points, facets.vertices[vertex], length[vertex] * spacing)
 
 
-def _along(triangulation: Triangulation, refinement: Bisection, spacing: float) -> Samples:
-    """Ends and middles of the edges of the refined mesh on the boundary."""
+def _along(triangulation: Triangulation, refinement: Bisection, spacing: float, share: Floats) -> Samples:
+    """Ends and middles of the edges of the refined mesh on the boundary, which count so much, (n,)."""
     flat, border = refinement.polyhedron, triangulation.border
-    straight = _straight(triangulation, refinement, spacing)
-    weight = flat.edge_lengths[border] * straight * spacing
+    weight = flat.edge_lengths[border] * share * spacing
     at_end = np.zeros(len(flat.vertices))
     for ends in (flat.tail, flat.head):
         np.add.at(at_end, ends[border], weight / 6)
