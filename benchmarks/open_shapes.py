@@ -34,7 +34,9 @@ def bumpy_disc(rings: int = 12) -> Polyhedron:
     return Polyhedron.from_faces(points, faces)
 
 
-def grid(n: int, m: int, place: Callable[[Floats, Floats], Floats], glued: tuple[bool, bool] = (False, False)) -> Polyhedron:
+def grid(
+    n: int, m: int, place: Callable[[Floats, Floats], Floats], glued: tuple[bool, bool] = (False, False)
+) -> Polyhedron:
     """Quadrilaterals on n x m places of the unit square, glued around in either direction or not."""
     rows, columns = n + (not glued[0]), m + (not glued[1])
     u, v = np.meshgrid(np.arange(rows) / n, np.arange(columns) / m, indexing="ij")
@@ -63,9 +65,7 @@ def moebius_band(n: int = 48, m: int = 8, width: float = 0.8) -> Polyhedron:
     def place(i: int, j: int) -> int:
         return i * (m + 1) + j if i < n else m - j
 
-    faces = [
-        [place(i, j), place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)] for i in range(n) for j in range(m)
-    ]
+    faces = [[place(i, j), place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)] for i in range(n) for j in range(m)]
     return Polyhedron.from_faces(points.reshape(-1, 3), faces)
 
 

@@ -18,7 +18,7 @@ from orbiframe.meshes.surface_type import surface_type
 from orbiframe.triangulations.lost_digits import crowding_of
 
 # A collar is as wide as so many functions of mean spacing.
-_FUNCTIONS_ACROSS = 3.0
+_FUNCTIONS_ACROSS = 6.0
 # A collar that costs more digits than this closes a long tube, which the double maps with all of them.
 _MOST_DIGITS = 10.0
 

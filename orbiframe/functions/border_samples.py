@@ -20,6 +20,8 @@ Ints = NDArray[np.intp]
 # An edge whose arc is higher than this share of the distance of functions stands for something curved, if it turns by
 # an angle between these: below it is straight, above there is a corner.
 _SAGITTA = 0.002
+# Points of a smooth boundary count so many times as much as those of a straight edge: nothing else holds it.
+_GIVEN = 4.0
 _STRAIGHT, _CORNER = np.radians(3), np.radians(40)
 
 
@@ -58,7 +60,7 @@ def _at_vertices(triangulation: Triangulation, refinement: Bisection, spacing: f
         np.add.at(length, ends[border], facets.edge_lengths[border] / 2)
     vertex = np.flatnonzero(length[:count] > 0)
     points = Points(triangulation.patch[vertex], triangulation.points[vertex])
-    return _held(points, facets.vertices[vertex], length[vertex] * spacing)
+    return _held(points, facets.vertices[vertex], _GIVEN * length[vertex] * spacing)
 
 
 def _along(triangulation: Triangulation, refinement: Bisection, spacing: float, share: Floats) -> Samples:

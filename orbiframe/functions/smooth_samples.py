@@ -76,9 +76,7 @@ def inside_facets(triangulation: Triangulation, refinement: Bisection) -> Bools:
     return np.asarray(triangulation.inside[refinement.in_facets()])
 
 
-def sagittas(
-    mesh: Polyhedron, area: Floats, crease: Bools | None = None, *, apart: Bools | None = None
-) -> Floats:
+def sagittas(mesh: Polyhedron, area: Floats, crease: Bools | None = None, *, apart: Bools | None = None) -> Floats:
     """For each triangle the largest of angle times height / 8 over its edges that are bent but not sharp.
 
     crease: (H,), which edges are sharp, by default those that bend by more than 40 degrees. Where creases are known, a

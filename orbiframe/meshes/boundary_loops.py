@@ -44,9 +44,7 @@ def boundary_loops(mesh: Polyhedron) -> list[Loop]:
     vertex, first, count = np.unique(ends.ravel()[order], return_index=True, return_counts=True)
     crowded = vertex[count != 2]
     if len(crowded):
-        raise TopologyError(
-            f"boundary loops touch at vertex {crowded[0]}; try again with --split-nonmanifold-vertices"
-        )
+        raise TopologyError(f"boundary loops touch at vertex {crowded[0]}; try again with --split-nonmanifold-vertices")
     # Side 2k + s is end s of open edge k; its partner is the other side at the same vertex.
     partner = np.empty(ends.size, dtype=np.intp)
     partner[order[first]], partner[order[first + 1]] = order[first + 1], order[first]

@@ -26,8 +26,9 @@ Ints = NDArray[np.intp]
 Closing = Literal["cap", "collar", "double"]
 
 _RINGS = 2
-# Rounds in which the directions of a collar are averaged along its loop: teeth of the boundary must not cross in it.
-_ROUNDS = 2
+# Rounds in which the directions of a collar are averaged along its loop, and at most its rings: teeth of the boundary
+# must not cross in it.
+_ROUNDS, _MOST_ROUNDS = 2, 200
 # A collar that becomes shorter outward ends at this share of the radius of its hole.
 _OF_HOLE = 0.35
 # A ring of no more vertices is joined to the middle; a larger one to a ring of half as many.
@@ -76,7 +77,15 @@ def _collar(mesh: Polyhedron, loop: Loop, strips: int, width: float) -> list[Flo
     if longer < length:
         hole = 2 * float(np.linalg.norm(_vector_area(points))) / length
         width = min(width, _OF_HOLE * hole) if hole > 0 else width
-    return [points + width * (k + 1) / strips * way for k in range(strips)]
+    steps = [width * (k + 1) / strips for k in range(strips)]
+    return [_rounded(points + step * way, step / (length / len(points))) for step in steps]
+
+
+def _rounded(ring: Floats, edges: float) -> Floats:
+    """A ring with each point averaged with those beside it, over about so many edges either way."""
+    for _ in range(min(int(np.ceil(edges**2)), _MOST_ROUNDS)):
+        ring = ring / 2 + (np.roll(ring, 1, axis=0) + np.roll(ring, -1, axis=0)) / 4
+    return ring
 
 
 def _outward(mesh: Polyhedron, loop: Loop) -> Floats:

@@ -73,9 +73,7 @@ def defects_of(polyhedron: Polyhedron) -> list[Defect]:
     return [defect for defect in found if defect is not None]
 
 
-def require_closed_surface(
-    polyhedron: Polyhedron, *, several: bool = False, boundary: bool = False
-) -> SurfaceType:
+def require_closed_surface(polyhedron: Polyhedron, *, several: bool = False, boundary: bool = False) -> SurfaceType:
     """The surface type of a polyhedron that is one closed connected surface; raises TopologyError otherwise.
 
     several: any number of closed surfaces will do; boundary: they may have one, and then are not closed.

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 from scipy.special import roots_legendre
 
 from orbiframe.functions.basis import DifferentiableBasis
@@ -14,6 +15,8 @@ from orbiframe.meshes.nearest_points import NearestPoints
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
 from orbiframe.orbifolds.atlas import Points
+from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
+from orbiframe.triangulations.point_location import Locator
 
 if TYPE_CHECKING:
     from orbiframe.surfaces.surface import OrbifoldSurface
@@ -23,6 +26,7 @@ Ints = NDArray[np.intp]
 
 # Parts of an edge of the refined mesh that are taken for straight, and points of it for means and integrals.
 _PARTS, _GAUSS = 8, 4
+_SECTIONS, _GOLDEN = 30, (np.sqrt(5) - 1) / 2
 
 
 class Border(NamedTuple):
@@ -101,11 +105,47 @@ def _least_element(surface: OrbifoldSurface, border: Ints) -> float | None:
     image = np.where(triangulation.inside, triangulation.areas, 0)
     around, on_x = (np.bincount(flat.tail, weights=np.repeat(table, 3)) for table in (area, image))
     vertex = np.unique(flat.tail[border])
-    d = surface.basis.jets(
-        Points(triangulation.patch[vertex], triangulation.points[vertex]), surface.coefficients, 1
-    )
+    d = surface.basis.jets(Points(triangulation.patch[vertex], triangulation.points[vertex]), surface.coefficients, 1)
     element = np.linalg.norm(np.cross(d[1], d[2]), axis=1)
     return float((element * on_x[vertex] / np.maximum(around[vertex], np.finfo(float).tiny)).min())
+
+
+def inside(surface: OrbifoldSurface, points: Points) -> NDArray[np.bool_]:
+    """Which points of X/H belong to the surface, (n,), and do not lie beyond its boundary."""
+    found = np.ones(len(points.patch), dtype=np.bool_)
+    if surface.triangulation.inside is not None:
+        location = Locator(GeodesicTriangulation.of_map(surface.triangulation)).locate(points)
+        found[location.order] = surface.triangulation.inside[location.face]
+    return found
+
+
+def nearest_on_border(surface: OrbifoldSurface, targets: Floats) -> tuple[Points, Floats]:
+    """The points of the boundary nearest to targets, (n, 3), and their distances, before the surface is placed.
+
+    The nearest of many points of the boundary, then golden sections about it along its edge.
+    """
+    border, at = surface.triangulation.border, (np.arange(_PARTS) + 0.5) / _PARTS
+    there = surface.basis.values(_along(surface, border, at), surface.coefficients)
+    edge, part = np.divmod(cKDTree(there).query(targets)[1], _PARTS)
+    halfedges, low, high = border[edge], np.maximum(at[part] - 1 / _PARTS, 0), np.minimum(at[part] + 1 / _PARTS, 1)
+    for _ in range(_SECTIONS):
+        left, right = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+        nearer = _away(surface, halfedges, left, targets) < _away(surface, halfedges, right, targets)
+        low, high = np.where(nearer, low, left), np.where(nearer, right, high)
+    middle = (low + high) / 2
+    return _on_edges(surface, halfedges, middle), _away(surface, halfedges, middle, targets)
+
+
+def _on_edges(surface: OrbifoldSurface, halfedges: Ints, share: Floats) -> Points:
+    """A point of X/H on each halfedge, (n,)."""
+    rows, barycentric = np.arange(len(share)), np.zeros((len(share), 3))
+    barycentric[rows, halfedges % 3], barycentric[rows, (halfedges + 1) % 3] = 1 - share, share
+    return surface.triangulation.locate(halfedges // 3, barycentric)
+
+
+def _away(surface: OrbifoldSurface, halfedges: Ints, share: Floats, targets: Floats) -> Floats:
+    there = surface.basis.values(_on_edges(surface, halfedges, share), surface.coefficients)
+    return np.asarray(np.linalg.norm(there - targets, axis=1))
 
 
 def turning(surface: OrbifoldSurface, number: int = 4) -> float:
@@ -126,7 +166,9 @@ def turning(surface: OrbifoldSurface, number: int = 4) -> float:
     x = points.x.reshape(*shape, 3)
     length = geometry.distance(x[:, 0], x[:, -1])
     # Unit tangents of the geodesics in the frame of each point: towards the end, and at the end away from the start.
-    ahead = np.where((np.arange(len(at)) == shape[1] - 1)[:, None], -geometry.log(x, x[:, :1]), geometry.log(x, x[:, -1:]))
+    ahead = np.where(
+        (np.arange(len(at)) == shape[1] - 1)[:, None], -geometry.log(x, x[:, :1]), geometry.log(x, x[:, -1:])
+    )
     frame = geometry.frame(x)
     u = np.stack([geometry.inner(x, ahead, frame[..., k]) for k in range(2)], axis=-1)
     u /= np.linalg.norm(u, axis=-1, keepdims=True)
