@@ -49,7 +49,7 @@ class Meaning(NamedTuple):
         own = area if triangulation.inside is None else area[inside_facets(triangulation, refinement)]
         spacing = float(own.sum() / size) ** 0.5
         found = self._inside(triangulation, refinement, size, spacing, noise)
-        return with_border(found, triangulation, refinement, spacing, arcs=_CURVED[self.name])
+        return with_border(found, triangulation, refinement, spacing, arcs=self.name != FACETS)
 
     def _inside(
         self, triangulation: Triangulation, refinement: Bisection, size: int, spacing: float, noise: float | None

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.functions.samples import Samples
+from orbiframe.functions.smooth_samples import inside_facets, sagittas
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.sizes import vector_areas
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.triangulations.triangulation import Triangulation
 
@@ -31,21 +33,19 @@ def with_border(
     refinement: Bisection,
     spacing: float,
     *,
-    arcs: Literal["none", "bent", "all"],
+    arcs: bool,
 ) -> Samples:
     """The samples of a mesh and those of its boundary, which are held; the same samples where it is closed.
 
     At the vertices of the refined mesh and the middles between them (Simpson's rule), weighted by length times the
-    spacing of functions. arcs: which edges stand for arcs, of which vertices of the mesh alone are true: "none", "all",
-    or "bent", those that turn by 3 to 40 degrees, the more the higher the arc over them is.
+    spacing of functions. arcs: whether edges stand for arcs, of which vertices of the mesh alone are true: never,
+    or where they turn by 3 to 40 degrees, or their facets are bent so, the less the higher the arc over them is.
     """
     if not len(triangulation.border):
         return samples
-    if arcs == "none":
+    if not arcs:
         return _joined(samples, _along(triangulation, refinement, spacing, np.ones(len(triangulation.border))))
     given = _joined(samples, _at_vertices(triangulation, refinement, spacing))
-    if arcs == "all":
-        return given
     straight = _straight(triangulation, refinement, spacing)
     return _joined(given, _along(triangulation, refinement, spacing, straight))
 
@@ -84,8 +84,7 @@ def _along(triangulation: Triangulation, refinement: Bisection, spacing: float, 
 
 def _border_of_facets(triangulation: Triangulation, refinement: Bisection) -> Ints:
     """The halfedges of facets on the boundary."""
-    assert triangulation.inside is not None
-    facets, inside = refinement.facets, triangulation.inside[refinement.in_facets()]
+    facets, inside = refinement.facets, inside_facets(triangulation, refinement)
     return np.flatnonzero(inside[facets.face] & ~inside[facets.face[facets.twin]])
 
 
@@ -95,7 +94,9 @@ def _straight(triangulation: Triangulation, refinement: Bisection, spacing: floa
     turn = _turns(facets, border)
     at_ends = np.maximum(turn[facets.tail[border]], turn[facets.head[border]])
     height = np.zeros(len(facets.tail))
-    height[border] = facets.edge_lengths[border] * at_ends / 8
+    area, inside = np.linalg.norm(vector_areas(facets), axis=1), inside_facets(triangulation, refinement)
+    over_face = sagittas(facets, area, apart=inside)[facets.face[border]]
+    height[border] = np.maximum(facets.edge_lengths[border] * at_ends / 8, over_face)
     # Every fine edge of the boundary lies in the facet edge whose ends have the barycentric coordinates that it has.
     own = np.concatenate([np.tile(np.eye(3), (facets.face_count, 1, 1)), np.zeros((facets.face_count, 3, 1))], axis=2)
     own[:, :, 3] = np.arange(facets.face_count)[:, None]

@@ -10,6 +10,7 @@ make a sphere with two long limbs of them.
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -61,7 +62,7 @@ def _patch(mesh: Polyhedron, loop: Loop, strips: int, width: float, *, open_: bo
     points, count = loop.points(mesh), len(loop.vertices)
     rings = [points, *_collar(mesh, loop, strips, width)]
     number = [count * k + np.arange(count) for k in range(len(rings))]
-    triangles = [_strip(inner, outer) for inner, outer in zip(number, number[1:], strict=False)]
+    triangles = [_strip(inner, outer) for inner, outer in pairwise(number)]
     if not open_:
         more, last = _cap(rings[-1], number[-1])
         rings, triangles = [*rings, more], [*triangles, last]
