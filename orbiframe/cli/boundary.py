@@ -12,6 +12,6 @@ def add_boundary(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--boundary",
         choices=CHOICES,
-        help="of an open mesh: how it is closed for the map, where the surface ends with the mesh; auto chooses; default "
-        "error (mesh.boundary)",
+        help="of an open mesh: how it is closed for the map, where the surface ends with the mesh; auto chooses; "
+        "default error (mesh.boundary)",
     )

@@ -26,8 +26,9 @@ _MOST_DIGITS = 10.0
 def mapping_of(mesh: Polyhedron, config: Config, stages: Stages) -> Mapping:
     """The maps of a mesh of unit size; one with a boundary is closed first, as the configuration says.
 
-    "auto" takes the collar, or where its map fails, or loses many digits as those of long tubes do, the double. Raises
-    TopologyError for boundary loops that cannot be closed.
+    "auto" takes the double of an annulus or a Möbius band, which is flat, else the collar; and the double where the map
+    of that fails, or loses many digits as those of long tubes do. Raises TopologyError for boundary loops that cannot
+    be closed.
     """
     if (mesh.twin >= 0).all():
         triangles = stages("triangles", triangulated, mesh)
@@ -39,6 +40,8 @@ def mapping_of(mesh: Polyhedron, config: Config, stages: Stages) -> Mapping:
         )
     if config.boundary != "auto":
         return _closed(mesh, config.boundary, config, stages)  # type: ignore[arg-type]
+    if surface_type(mesh).euler_characteristic == 0:
+        return _closed(mesh, "double", config, stages)
     collar = _closed(mesh, "collar", config, stages)
     return collar if _is_good(collar) else _closed(mesh, "double", config, stages)
 

@@ -70,8 +70,8 @@ class Mapping:
     """The maps of one polyhedron of unit size.
 
     triangles: its faces cut into triangles; inside: (F,), those of a mesh with a boundary, which the others only close,
-    None where all are; closing: how it was closed; maps: the refinement and the map for every longest edge that has been
-    needed so far.
+    None where all are; closing: how it was closed; maps: the refinement and the map for every longest edge that has
+    been needed so far.
     """
 
     polyhedron: Polyhedron

@@ -75,6 +75,8 @@ def meaning_of(mesh: Polyhedron, asked: str, size: int, creases: float | None = 
         return Meaning(asked, share, "as asked")
     if creases is not None:
         return _beside_creases(mesh, share, creases)
+    if mesh.edge_lengths @ bending(mesh).angle <= _FLAT * mesh.edge_lengths.sum():
+        return Meaning(FACETS, share, "it is flat")
     percent = f"{100 * share:.0f} % of its bending lies in edges of more than 40°"
     if share <= _SMOOTH:
         return Meaning(SMOOTH, share, percent)

@@ -63,9 +63,9 @@ def fit(
     standard error stream, False nothing. share: of the faces that a fine picture needs; maps: a folder from which maps
     to X/H are taken where they are there, and in which they are kept.
 
-    settings: what is to differ from the configuration: `size`, `tolerance`, `max_error`, `refine`, `boundary` and `fast=True` as on
-    the command line; a table by its name, `basis="ps2"` or `fitter={"name": "smoothing", "fairing": 1e-3}`. Raises
-    FormatError, TopologyError, MapError, FitError or ConfigError, each a sentence with a next step, and UsageError for
+    settings: what is to differ from the configuration: `size`, `tolerance`, `max_error`, `refine`, `boundary` and
+    `fast=True` as on the command line; a table by its name, `basis="ps2"` or
+    `fitter={"name": "smoothing", "fairing": 1e-3}`. Raises FormatError, TopologyError, MapError, FitError or ConfigError, each a sentence with a next step, and UsageError for
     an unknown keyword or what is no mesh.
     """
     config = configured(config, settings)

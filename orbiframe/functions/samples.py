@@ -43,8 +43,8 @@ class Samples:
     normals: (n, 3), the unit normal of what each sample of a surface lies on, nan where it is that of the surface to be
     found; still: (n,), the samples that do not slide along the surface, as where creases would be crossed; None for
     none; held: (n,), the samples that the surface passes through at their own parameters, all coordinates of which
-    count alike, as those of a boundary; None for none. Raises FitError if the shapes do not fit, for a value that is not
-    finite, and for another number that is negative or not finite.
+    count alike, as those of a boundary; None for none. Raises FitError if the shapes do not fit, for a value that is
+    not finite, and for another number that is negative or not finite.
     """
 
     points: Points

@@ -73,7 +73,10 @@ def _collar(mesh: Polyhedron, loop: Loop, strips: int, width: float) -> list[Flo
     """Rings beside a loop, outward in the planes of its faces."""
     if not strips:
         return []
-    points, way = loop.points(mesh), _outward(mesh, loop)
+    points = loop.points(mesh)
+    # On a loop of few long edges nothing is averaged: its corners are no teeth.
+    edges = width / max(loop.length(mesh) / len(points), np.finfo(float).tiny)
+    way = _outward(mesh, loop, min(int(edges**2), _ROUNDS))
     length, longer = (_around(ring) for ring in (points, points + width * way))
     if longer < length:
         hole = 2 * float(np.linalg.norm(_vector_area(points))) / length
@@ -84,20 +87,20 @@ def _collar(mesh: Polyhedron, loop: Loop, strips: int, width: float) -> list[Flo
 
 def _rounded(ring: Floats, edges: float) -> Floats:
     """A ring with each point averaged with those beside it, over about so many edges either way."""
-    for _ in range(min(int(np.ceil(edges**2)), _MOST_ROUNDS)):
+    for _ in range(min(int(edges**2), _MOST_ROUNDS)):
         ring = ring / 2 + (np.roll(ring, 1, axis=0) + np.roll(ring, -1, axis=0)) / 4
     return ring
 
 
-def _outward(mesh: Polyhedron, loop: Loop) -> Floats:
+def _outward(mesh: Polyhedron, loop: Loop, rounds: int) -> Floats:
     """Directions away from the faces at the vertices of a loop, (n, 3), longer at corners, that offset its edges by 1.
 
-    Averaged along the loop a few times.
+    Averaged along the loop so many times.
     """
     h = loop.halfedges
     along = mesh.vertices[mesh.head[h]] - mesh.vertices[mesh.tail[h]]
     across = _unit(np.cross(along, vector_areas(mesh)[mesh.face[h]]))
-    for _ in range(_ROUNDS):
+    for _ in range(rounds):
         across = _unit(across / 2 + (np.roll(across, 1, axis=0) + np.roll(across, -1, axis=0)) / 4)
     both = across + np.roll(across, 1, axis=0)
     return np.asarray(both / np.maximum((both**2).sum(axis=1) / 2, 0.5)[:, None])
@@ -167,8 +170,8 @@ def _glued(mesh: Polyhedron, loops: list[Loop], patches: list[tuple[Floats, Ints
         same.append(backward)
     added = sum(len(triangles) for _, triangles in patches)
     offsets = np.concatenate([mesh.offsets, mesh.offsets[-1] + 3 * (1 + np.arange(added))])
-    tables = (np.concatenate(parts) for parts in (tails, twins, same))
-    return Polyhedron(np.concatenate(vertices), offsets, *tables, unit=mesh.unit)
+    tail, twin, backward = np.concatenate(tails), np.concatenate(twins), np.concatenate(same)
+    return Polyhedron(np.concatenate(vertices), offsets, tail, twin, backward, unit=mesh.unit)
 
 
 def _doubled(mesh: Polyhedron) -> Polyhedron:

@@ -42,6 +42,6 @@ def nearest_points(surface: OrbifoldSurface, targets: Floats, steps: int = 8) ->
     )
     outside = np.flatnonzero(~inside(surface, feet))
     if len(outside):
-        there, away = nearest_on_border(surface, wanted[outside])
-        feet.patch[outside], feet.x[outside], distance[outside] = there.patch, there.x, away
+        ends, away = nearest_on_border(surface, wanted[outside])
+        feet.patch[outside], feet.x[outside], distance[outside] = ends.patch, ends.x, away
     return feet, distance * surface.scale

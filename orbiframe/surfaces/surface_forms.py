@@ -50,7 +50,7 @@ class SurfaceForms:
         number = max(getattr(chosen, "degree", 0) + 1, _LEAST)
         if surface.triangulation.inside is not None:
             raise FitError(
-                "the surface has a boundary, and integrals of functions and equations are for closed surfaces only so far"
+                "the surface has a boundary, and integrals of functions and equations are for closed surfaces so far"
             )
         over = integration(surface, chosen, number)
         if on_x:

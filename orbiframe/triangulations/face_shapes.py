@@ -45,8 +45,8 @@ class FaceShapes:
 
     def first(self, count: int) -> FaceShapes:
         """Those of the first faces."""
-        tables = (self.corners, self.angle, self.adjacent, self.opposite, self.area)
-        return FaceShapes(*(table[:count] for table in tables))
+        few = slice(count)
+        return FaceShapes(self.corners[few], self.angle[few], self.adjacent[few], self.opposite[few], self.area[few])
 
     def summary(self) -> dict[str, Any]:
         """Median, 95th percentile, maximum and the worst face of each measure; angles in degrees, None for no face."""
