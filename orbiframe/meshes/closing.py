@@ -30,8 +30,8 @@ _RINGS = 2
 # Rounds in which the directions of a collar are averaged along its loop, and at most its rings: teeth of the boundary
 # must not cross in it.
 _ROUNDS, _MOST_ROUNDS = 2, 200
-# A collar that becomes shorter outward ends at this share of the radius of its hole.
-_OF_HOLE = 0.35
+# A collar in a hole ends at this share of its radius; a step of so much of the radius tells what lies in a hole.
+_OF_HOLE, _TRIED = 0.35, 0.1
 # A ring of no more vertices is joined to the middle; a larger one to a ring of half as many.
 _FEW = 8
 
@@ -77,10 +77,11 @@ def _collar(mesh: Polyhedron, loop: Loop, strips: int, width: float) -> list[Flo
     # On a loop of few long edges nothing is averaged: its corners are no teeth.
     edges = width / max(loop.length(mesh) / len(points), np.finfo(float).tiny)
     way = _outward(mesh, loop, min(int(edges**2), _ROUNDS))
-    length, longer = (_around(ring) for ring in (points, points + width * way))
-    if longer < length:
-        hole = 2 * float(np.linalg.norm(_vector_area(points))) / length
-        width = min(width, _OF_HOLE * hole) if hole > 0 else width
+    length = _around(points)
+    # The radius of a circle, and of teeth about one.
+    hole = 2 * _area(points) / max(length, np.finfo(float).tiny)
+    if _area(points + _TRIED * hole * way) < (1 - _TRIED / 4) * _area(points):
+        width = min(width, _OF_HOLE * hole)
     steps = [width * (k + 1) / strips for k in range(strips)]
     return [_rounded(points + step * way, step / (length / len(points))) for step in steps]
 
@@ -201,9 +202,10 @@ def _around(ring: Floats) -> float:
     return float(np.linalg.norm(np.roll(ring, -1, axis=0) - ring, axis=1).sum())
 
 
-def _vector_area(ring: Floats) -> Floats:
+def _area(ring: Floats) -> float:
+    """The area of a closed chain of points, seen from where it is largest."""
     centred = ring - ring.mean(axis=0)
-    return np.asarray(np.cross(centred, np.roll(centred, -1, axis=0)).sum(axis=0) / 2)
+    return float(np.linalg.norm(np.cross(centred, np.roll(centred, -1, axis=0)).sum(axis=0))) / 2
 
 
 def _unit(vectors: Floats) -> Floats:
