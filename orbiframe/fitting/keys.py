@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any
 
 from orbiframe.components.options import Option, options_of
 from orbiframe.components.registry import Registry, resolve
@@ -90,7 +90,7 @@ def config_keys(registry: Registry) -> Iterator[ConfigKey]:
         if table in STEPS:
             yield from _step_keys(table, registry)
             if table == "mesh":
-                yield ConfigKey("mesh", "boundary", Boundary, "error", _BOUNDARY_MEANING, choices=get_args(Boundary))
+                yield ConfigKey("mesh", "boundary", Boundary, "error", _BOUNDARY_MEANING)
         else:
             yield from _result_keys(table, Data if table == "data" else Output)
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 from open_shapes import SHAPES, cylinder, grid, moebius_band, square_sheet
-
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
