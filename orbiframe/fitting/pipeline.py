@@ -65,8 +65,8 @@ def fit(
 
     settings: what is to differ from the configuration: `size`, `tolerance`, `max_error`, `refine`, `boundary` and
     `fast=True` as on the command line; a table by its name, `basis="ps2"` or
-    `fitter={"name": "smoothing", "fairing": 1e-3}`. Raises FormatError, TopologyError, MapError, FitError or ConfigError, each a sentence with a next step, and UsageError for
-    an unknown keyword or what is no mesh.
+    `fitter={"name": "smoothing", "fairing": 1e-3}`. Raises FormatError, TopologyError, MapError, FitError or
+    ConfigError, each a sentence with a next step, and UsageError for an unknown keyword or what is no mesh.
     """
     config = configured(config, settings)
     registry = registry_for(config) if registry is None else registry

@@ -1,4 +1,4 @@
-"""Open meshes: surfaces that end where the mesh ends, near it inside and on the boundary, and known by all that follows."""
+"""Open meshes: surfaces that end where the mesh ends, near it inside and on the boundary, and what follows knows it."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def test_fields_are_fitted_on_the_surface() -> None:
 
 def test_what_needs_a_closed_surface_says_so(tmp_path) -> None:
     surface = of("cylinder").surface
-    with pytest.raises(FitError, match="has a boundary.*closed surfaces only so far; write a mesh"):
+    with pytest.raises(FitError, match=r"has a boundary.*closed surfaces only so far; write a mesh"):
         gate.export(tmp_path / "tube.vtu", surface, REGISTRY)
     with pytest.raises(FitError, match="has a boundary"):
         SurfaceForms.of(surface)
@@ -161,11 +161,11 @@ def test_auto_doubles_annuli_and_bands_and_gives_the_others_a_collar() -> None:
 
 
 def test_an_open_mesh_is_refused_unless_asked_for() -> None:
-    with pytest.raises(TopologyError, match="64 open edges.*try again with --boundary auto"):
+    with pytest.raises(TopologyError, match=r"64 open edges.*try again with --boundary auto"):
         fit(cylinder(), size=100, progress=False)
     with pytest.raises(ConfigError, match=r"mesh.boundary = 'lid': input should be 'error', 'cap', 'collar'"):
         Config.load(overrides=["mesh.boundary=lid"], registry=REGISTRY)
-    with pytest.raises(ConfigError, match="creases .* are kept on closed meshes only so far"):
+    with pytest.raises(ConfigError, match=r"creases .* are kept on closed meshes only so far"):
         fit(cylinder(), boundary="auto", data={"creases": 30}, basis="ps2", progress=False)
 
 
