@@ -39,6 +39,7 @@ def submesh(mesh: Polyhedron, faces: NDArray[np.bool_]) -> Submesh:
         normals=normals,
         colors=colors,
         face_colors=None if mesh.face_colors is None else mesh.face_colors[faces],
+        corner_uv=None if mesh.corner_uv is None else mesh.corner_uv[corner],
         corner_normals=None if mesh.corner_normals is None else mesh.corner_normals[corner],
     )
     return Submesh(found, np.flatnonzero(used))

@@ -5,3 +5,4 @@ from .local_girth import Girth as Girth, girth as girth, site_density as site_de
 from .lost_digits import crowding_of as crowding_of
 from .point_location import Location as Location, Locator as Locator
 from .triangulation import Triangulation as Triangulation
+from .unrolled import Unrolled as Unrolled, unrolled as unrolled

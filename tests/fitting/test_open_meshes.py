@@ -167,6 +167,8 @@ def test_an_open_mesh_is_refused_unless_asked_for() -> None:
         Config.load(overrides=["mesh.boundary=lid"], registry=REGISTRY)
     with pytest.raises(ConfigError, match=r"creases .* are kept on closed meshes only so far"):
         fit(cylinder(), boundary="auto", data={"creases": 30}, basis="ps2", progress=False)
+    with pytest.raises(ConfigError, match=r"texture coordinates .* are made of closed surfaces only so far"):
+        fit(cylinder(), boundary="auto", output={"uv": True}, progress=False)
 
 
 def test_a_closed_mesh_takes_no_notice() -> None:
