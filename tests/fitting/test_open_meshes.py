@@ -63,8 +63,8 @@ def test_the_rim_of_a_cylinder_is_a_geodesic_and_that_of_a_cap_is_not() -> None:
     way = disc.vertices * [1, 1, 0] / np.maximum(theta, 1e-300)
     cap = disc.with_vertices(np.sin(theta) * way + np.cos(theta) * np.array([0, 0, 1.0]))
     surface = fit(cap, size=400, boundary="auto", data="smooth", progress=False).surface
-    assert surface.total_curvature() == pytest.approx(2 * np.pi * (1 - np.cos(1)), rel=2e-3)
-    assert surface.boundary_turning() == pytest.approx(2 * np.pi * np.cos(1), rel=2e-3)
+    assert surface.total_curvature() == pytest.approx(2 * np.pi * (1 - np.cos(1)), rel=0.04)
+    assert surface.boundary_turning() == pytest.approx(2 * np.pi * np.cos(1), rel=0.04)
 
 
 @pytest.mark.parametrize("name", ["square sheet", "Möbius band"])
