@@ -42,7 +42,34 @@ def description(polyhedron: Polyhedron) -> dict[str, Any]:
         "edge_lengths": {name: float(find(lengths)) for name, find in _spread(np)},
         "valences": {name: float(find(valences)) for name, find in _spread(np)},
         "defects": [asdict(defect) for defect in defects_of(polyhedron)],
+        "boundary": _boundary(polyhedron),
         "notes": [asdict(note) for note in measure.notes(polyhedron)],
+    }
+
+
+def _boundary(polyhedron: Polyhedron) -> dict[str, Any] | None:
+    """The boundary loops, the longest first, and the closed surface that caps make; None where there is none.
+
+    None also where open edges make no loops, as where they touch.
+    """
+    from orbiframe.errors import TopologyError
+    from orbiframe.meshes.boundary_loops import boundary_loops
+    from orbiframe.meshes.closing import closed_by
+    from orbiframe.meshes.surface_type import surface_type
+
+    if (polyhedron.twin >= 0).all():
+        return None
+    try:
+        loops = boundary_loops(polyhedron)
+        closed = surface_type(closed_by(polyhedron, "cap", 0.0)).name
+    except TopologyError:
+        return None
+    sizes = sorted(((loop.length(polyhedron), len(loop.vertices)) for loop in loops), reverse=True)
+    return {
+        "loops": len(sizes),
+        "edges": [count for _, count in sizes],
+        "lengths": [length for length, _ in sizes],
+        "closed_to": closed,
     }
 
 
@@ -59,11 +86,19 @@ def lines(described: dict[str, Any]) -> Iterator[str]:
     yield f"box {sides}, from {_point(low)} to {_point(high)}"
     yield f"area {_number(described['area'])}{_volume(described['volume'])}"
     yield f"edge lengths {_range(described['edge_lengths'])}; valences {_range(described['valences'])}"
+    yield from _boundary_lines(described["boundary"])
     for defect in described["defects"]:
         remedy = f"; {defect['remedy']} helps" if defect["remedy"] else ""
         yield f"defect: {_title(defect)}: {defect['where']}{remedy}"
     for note in described["notes"]:
         yield f"note: {note['kind']}: {note['where']}"
+
+
+def _boundary_lines(boundary: dict[str, Any] | None) -> Iterator[str]:
+    if boundary is not None:
+        shown = ", ".join(map(_number, boundary["lengths"][:5])) + (", …" if boundary["loops"] > 5 else "")
+        loops = "1 boundary loop" if boundary["loops"] == 1 else f"{boundary['loops']} boundary loops"
+        yield f"{loops}, of length {shown}; capped it is {boundary['closed_to']}"
 
 
 def _title(defect: dict[str, Any]) -> str:

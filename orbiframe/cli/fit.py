@@ -1,4 +1,4 @@
-"""orbiframe fit: one smooth surface from a closed mesh."""
+"""orbiframe fit: one smooth surface from a mesh."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from orbiframe.cli.boundary import add_boundary
 from orbiframe.cli.exports import export, export_options, require_known, size_of
 from orbiframe.cli.repairs import add_repairs, repaired, repairs_asked
 from orbiframe.cli.report import json_text, summary, write_report
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add("mesh", metavar="MESH", type=Path, nargs="+", help="closed surfaces, orientable or not, of any genus")
+    add("mesh", metavar="MESH", type=Path, nargs="+", help="surfaces, orientable or not, of any genus")
     add("-o", "--output", metavar="OUT", type=Path, help="a fine mesh, or the exact surface as .step")
     add("--into", metavar="DIR", type=Path, help="the folder for many meshes, instead of -o")
     add("--to", metavar="SUFFIX", default="ply", help="with --into: the suffix of the files; default ply")
@@ -44,6 +45,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=float,
         help="edges that bend by ANGLE degrees or more stay sharp (data.creases)",
     )
+    add_boundary(parser)
     add("--fast", action="store_true", help="one linear fit on one map (fitter.name=least-squares, data.lift=false)")
     add("--shape", metavar="NAME", help="makes faces regular in X/H, such as regular-faces (shape.method)")
     add(
@@ -89,14 +91,20 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
 def fitted(args: argparse.Namespace, registry: Registry, progress: Progress) -> tuple[dict[str, Any], str | None]:
     """Fit one mesh and write what was asked for; the report, and what was written where that is no mesh."""
     from orbiframe.files import gate
+    from orbiframe.files.gate import require_no_boundary
     from orbiframe.fitting.config import Config
     from orbiframe.fitting.parts import fit_parts
+    from orbiframe.fitting.pipeline import mesh_of
 
     config = Config.load(args.config, overrides(args), registry)
     _require_destinations(args, config, registry)
+    kind = _kind(args, config, registry)
     mesh = _repaired(args, config, registry) if repairs_asked(args) else args.mesh
+    if kind == "exporter" and config.boundary != "error":
+        mesh = mesh_of(mesh, config, registry)
+        require_no_boundary(args.output, open_=bool((mesh.twin < 0).any()))
     found = fit_parts(mesh, config, registry, progress)
-    written, kind = None, _kind(args, config, registry)
+    written = None
     if kind == "elements":
         written = _write_elements(args, found, config.output.refine or 1, registry, progress)
     elif kind == "exporter":
@@ -147,7 +155,7 @@ def _write_elements(
     gate.write_elements(args.output, mesh, registry, format=args.format)
     found.report["seconds"]["elements"] = round(time.perf_counter() - start, 4)
     progress("elements", found.report["seconds"]["elements"])
-    other = any(part.gluing is not surface.refinement.coarse for part, surface in zip(faces, surfaces, strict=True))
+    other = any(not part.of_input for part in faces)
     if other and not args.quiet and all(surface.triangulation.crease is None for surface in surfaces):
         say("triangles of the input fold as geodesic triangles, so the elements are Delaunay triangles of its vertices")
     return f"{len(mesh.elements)} triangles of order {mesh.order}, {len(mesh.nodes)} nodes, {size_of(args.output)}"
@@ -173,6 +181,7 @@ def overrides(args: argparse.Namespace) -> list[str]:
         "output.max_error": args.max_error,
         "data.means": args.data,
         "data.creases": args.creases,
+        "mesh.boundary": args.boundary,
         "output.refine": args.refine,
         "output.uv": "true" if args.uv else None,
     }

@@ -64,6 +64,7 @@ def _lines(report: Mapping[str, Any], written: str | None) -> Iterator[tuple[str
     yield "data", f"{report['data']['means']}: {report['data']['reason']}"
     yield "fit", f"{fit['basis']}, {fit['size']} functions, {fit['samples']} samples, {fit['fitter']}"
     yield "error", f"rms {fit['rms']:.2e}, max {fit['max']:.2e} of the bounding-box diagonal"
+    yield from _boundary(report.get("boundary"))
     yield from _distances(report["distance"])
     yield from _creases(report.get("creases"))
     yield from _texture(report.get("uv"))
@@ -78,6 +79,18 @@ def _ending(report: Mapping[str, Any], written: str | None) -> Iterator[tuple[st
     yield "output", mesh if written is None else written
     stages = ", ".join(f"{stage} {seconds:.1f}" for stage, seconds in report["seconds"].items())
     yield "seconds", f"{sum(report['seconds'].values()):.1f} ({stages})"
+
+
+def _boundary(boundary: Mapping[str, Any] | None) -> Iterator[tuple[str, str]]:
+    """The boundary, if there is one: how the mesh was closed for the map, and how near the surface's own is."""
+    if boundary is not None:
+        element = boundary["least_element"]
+        least = "" if element is None else f"; least element {element:.2f}"
+        yield (
+            "boundary",
+            f"{_counted(boundary['loops'], 'loop', 'loops')}, mapped as {boundary['closed_to']} by "
+            f"{boundary['closed_by']}; rms {boundary['rms']:.2e}, max {boundary['max']:.2e}{least}",
+        )
 
 
 def _distances(distance: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

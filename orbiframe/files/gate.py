@@ -112,11 +112,21 @@ def export(
     """Write a surface itself, exactly, by the exporter of the file's suffix with its options; what it says of the file.
 
     The file appears whole or not at all, as in `write`. Raises FormatError where the place is unfit or the exporter
-    fails, FitError for a surface that has no exact patches where these are asked for.
+    fails, FitError for a surface with a boundary, or without exact patches where these are asked for.
     """
     path = Path(path)
     require_output(path)
+    require_no_boundary(path, open_=surface.triangulation.inside is not None)
     return dict(_write_whole(path, _component(path, registry, "exporter", None, options), surface) or {})
+
+
+def require_no_boundary(path: Path, *, open_: bool) -> None:
+    """Raise FitError for a surface with a boundary, which files of exact patches and of few faces do not trim."""
+    if open_:
+        raise FitError(
+            f"{path}: the surface has a boundary, and files for CAD hold closed surfaces only so far; write a mesh, to "
+            "part.ply, or curved triangles, to part.vtu with --order 3, or close the mesh first"
+        )
 
 
 def write_elements(path: Path, mesh: CurvedMesh, registry: Components, *, format: str | None = None) -> None:

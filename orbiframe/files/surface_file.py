@@ -25,6 +25,7 @@ from orbiframe.files.surface_laws import (
     require,
     require_atlas,
     require_creases,
+    require_inside,
     require_map,
     require_mesh,
     require_refinement,
@@ -85,6 +86,7 @@ _OPTIONAL: dict[str, tuple[type, tuple[int | str, ...]]] = {
     "density": (np.float64, ("W",)),
     "crease": (np.bool_, ("I",)),
     "sites": (np.intp, ("S",)),
+    "inside": (np.bool_, ("G1",)),
     "flip_halfedge": (np.intp, ("L", 2)),
     "flip_crossing": (np.float64, ("L", 2)),
     "flip_halved": (np.bool_, ("L",)),
@@ -222,10 +224,11 @@ def _surface(arrays: Arrays, about: About, registry: Components, path: Path) -> 
     density = arrays.get("density")
     if density is not None:
         require(np.isfinite(density) & (density > 0), "density", "numbers are finite and positive")
-    marks = arrays.get("crease"), arrays.get("sites")
+    marks = arrays.get("crease"), arrays.get("sites"), arrays.get("inside")
     triangulation = Triangulation(orbifold, fine, *places, about["group"], about["weights"], density, *marks)
     require_map(triangulation)
     require_creases(triangulation)
+    require_inside(triangulation, refinement)
     coefficients, origin, scale = arrays["coefficients"], arrays["origin"], float(arrays["scale"])
     for name in ("coefficients", "origin", "scale"):
         require(np.isfinite(arrays[name]), name, "numbers are finite")
@@ -321,4 +324,11 @@ def _optional(surface: OrbifoldSurface) -> dict[str, NDArray[Any] | None]:
     steps = {} if log is None else {"flip_halfedge": log.halfedge, "flip_crossing": log.crossing}
     halved = {} if log is None or not log.halved.any() else {"flip_halved": log.halved}
     flat = surface.triangulation
-    return {"density": flat.density, "crease": flat.crease, "sites": flat.sites, **steps, **halved}
+    return {
+        "density": flat.density,
+        "crease": flat.crease,
+        "sites": flat.sites,
+        "inside": flat.inside,
+        **steps,
+        **halved,
+    }

@@ -210,6 +210,18 @@ def require_creases(triangulation: Triangulation) -> None:
         raise BrokenLaw("sites", f"their Delaunay triangulation has the creases as edges; {error}") from error
 
 
+def require_inside(triangulation: Triangulation, refinement: Bisection) -> None:
+    """Triangles that belong to a mesh with a boundary: some, not all, and all or none of a triangle of the input."""
+    inside = triangulation.inside
+    if inside is None:
+        return
+    count = triangulation.polyhedron.face_count
+    require(len(inside) == count, "inside", f"it has an entry for each of {count} triangles")
+    require(inside.any() and not inside.all(), "inside", "some triangles belong to the mesh and some do not")
+    marks = np.repeat(inside[refinement.in_facets()].astype(float), 3).reshape(-1, 3, 1)
+    require((refinement.spread(marks)[:, 0, 0] > 0.5) == inside, "inside", "triangles of the input are not divided")
+
+
 def _squares(points: Floats) -> Floats:
     return np.asarray(np.maximum(1.0, np.abs(points).max(axis=1)) ** 2)
 

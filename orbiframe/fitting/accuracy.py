@@ -15,6 +15,8 @@ from orbiframe.functions.samples import Samples, places
 from orbiframe.meshes.edge_paths import first_largest
 from orbiframe.meshes.nearest_points import NearestPoints
 from orbiframe.meshes.sizes import vector_areas
+from orbiframe.meshes.submesh import submesh
+from orbiframe.surfaces.border import Border, border_of
 from orbiframe.surfaces.surface import OrbifoldSurface
 
 Floats = NDArray[np.float64]
@@ -38,7 +40,8 @@ class Accuracy(NamedTuple):
     """Distances of the mesh to the surface, of the surface to the mesh, and of the given vertices to the surface.
 
     normals: the root mean square of the angle between normals of facets and of the surface at the feet, in degrees;
-    at_vertices: (V,), the distances of the vertices of the refined mesh to the surface: where functions are missing.
+    at_vertices: (V,), the distances of the vertices of the refined mesh to the surface: where functions are missing;
+    border: how well the boundary of the surface is that of the mesh, None where there is none.
     """
 
     to_surface: Distances
@@ -46,6 +49,7 @@ class Accuracy(NamedTuple):
     vertices: Distances
     normals: float
     at_vertices: Floats
+    border: Border | None = None
 
     def against(self, smooth: bool) -> tuple[float, float]:
         """Root mean square and maximum of the distance to what the mesh means: its vertices, or both ways."""
@@ -61,24 +65,33 @@ def accuracy_of(surface: OrbifoldSurface) -> Accuracy:
     surface that is worse than its own centroid.
     """
     flat, given = surface.refinement.polyhedron, len(surface.refinement.coarse.vertices)
-    samples = places(replace(surface.triangulation, polyhedron=flat))
-    there, away, normals = _seen(surface, samples)
+    everywhere = places(replace(surface.triangulation, polyhedron=flat))
+    inside = surface.triangulation.inside
+    # Of a mesh with a boundary only what belongs to it is seen: first its vertices, then its centroids.
+    own = np.arange(len(everywhere.weights)) if inside is None else np.flatnonzero(everywhere.weights > 0)
+    samples, count = everywhere.take(own), int(np.searchsorted(own, len(flat.vertices)))
+    given = int(np.searchsorted(own, given))
+    there, away, normals = _seen(surface, samples, given)
     _require_sane(there, samples.values, samples.weights)
-    back = NearestPoints(flat).distance(there)
+    mesh = flat if inside is None else submesh(flat, inside).mesh
+    back = NearestPoints(mesh).distance(there)
+    at_vertices = np.zeros(len(flat.vertices))
+    at_vertices[own[:count]] = away[:count]
     return Accuracy(
         _distances(away, samples.weights, samples.values),
         _distances(back, samples.weights, there),
         _distances(away[:given], samples.weights[:given], samples.values[:given]),
-        _tilt(normals[len(flat.vertices) :], vector_areas(flat)),
-        away[: len(flat.vertices)],
+        _tilt(normals[count:], vector_areas(flat)[own[count:] - len(flat.vertices)]),
+        at_vertices,
+        None if inside is None else border_of(surface),
     )
 
 
-def _seen(surface: OrbifoldSurface, samples: Samples) -> tuple[Floats, Floats, Floats]:
+def _seen(surface: OrbifoldSurface, samples: Samples, given: int) -> tuple[Floats, Floats, Floats]:
     """The points of a surface over samples, the distances of the samples to it, and the normals at their feet.
 
     Feet near by are found on the parabolic surface that touches at the sample, those that matter most by Newton's
-    method.
+    method: so are those of the first samples, as many as are given.
     """
     basis, coefficients, targets = surface.basis, surface.coefficients, samples.values
     if not isinstance(basis, DifferentiableBasis):
@@ -96,7 +109,7 @@ def _seen(surface: OrbifoldSurface, samples: Samples) -> tuple[Floats, Floats, F
         size = np.maximum(np.linalg.norm(normals, axis=1), np.finfo(float).tiny)
         away = np.abs(np.einsum("ni,ni->n", left, normals)) / size
     far = (np.linalg.norm(way, axis=1) > _NEAR * spacing) | (away >= np.quantile(away, 1 - _WORST))
-    chosen = np.append(np.arange(len(surface.refinement.coarse.vertices)), np.flatnonzero(far))
+    chosen = np.append(np.arange(given), np.flatnonzero(far))
     start = samples.take(chosen)
     away[chosen] = foot_points(basis, coefficients, start.points, start.values, spacing)[1]
     return jets[0], away, normals

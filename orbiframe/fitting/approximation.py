@@ -71,7 +71,7 @@ class Approximations:
         needed = size_needed(basis, energy)
         if needed > basis.size and self._given_size is None:
             return self.of_size(max(needed, basis.size + 100), density)
-        meaning = meaning_of(self.mapping.facets, self.config.data.means, size, self.config.data.creases)
+        meaning = meaning_of(self.mapping.own_facets, self.config.data.means, size, self.config.data.creases)
         notes = () if needed <= basis.size else (too_few(basis.size, needed),)
         try:
             if meaning.smooth and self.config.data.lift and self.config.data.creases is None:
@@ -140,8 +140,13 @@ class Approximations:
         first = self.stages.registry.load("fitter", _FIRST_FITTER)()
         surface = self._surface(mapped, basis, meaning, first)[1]
         flat = mapped.triangulation
-        lifted = flat.polyhedron.with_vertices(surface.evaluate(Points(flat.patch, flat.points)))
-        return self.mapping.of_lifted(mapped, lifted)
+        there = surface.evaluate(Points(flat.patch, flat.points))
+        if flat.inside is not None:
+            # What only closes the mesh stays where it is: the surface need not be fair there.
+            beyond = np.ones(len(there), dtype=np.bool_)
+            beyond[flat.polyhedron.triangles[flat.inside]] = False
+            there[beyond] = flat.polyhedron.vertices[beyond]
+        return self.mapping.of_lifted(mapped, flat.polyhedron.with_vertices(there))
 
     def _surface(
         self, mapped: Mapped, basis: Basis, meaning: Meaning, fitter: Fitter

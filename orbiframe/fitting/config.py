@@ -65,6 +65,9 @@ class Data:
     creases: Annotated[float, Gt(0), Le(180)] | None = None
 
 
+# What to do with the boundary of a mesh, in the table of the mesh.
+Boundary = Literal["error", "cap", "collar", "double", "auto"]
+
 # The basis if nothing is said and creases are kept.
 CREASED_BASIS = "clough-tocher"
 
@@ -89,7 +92,7 @@ class Config:
     mesh: the reader, "auto" by the file suffix; geometry: the plane X, "auto" by the Euler characteristic; group:
     "mesh" takes the group from the mesh; marking: cuts the mesh open for a named group; map: "auto" takes the
     parametrizer that fits the geometry and the group; shape: changes the map so that faces become regular, "none"
-    leaves it as it is; basis; fitter.
+    leaves it as it is; basis; fitter. boundary: how a mesh with a boundary is closed for the map, "error" if it is not.
     places: where each "table.key" was written, for error messages. NAMES: of all tables.
 
     >>> from orbiframe import Config
@@ -105,6 +108,7 @@ class Config:
     data: Data = field(default_factory=Data)
     plugins: tuple[Path, ...] = ()
     places: Mapping[str, str] = field(default_factory=dict)
+    boundary: Boundary = "error"
 
     @classmethod
     def load(cls, path: Path | None = None, overrides: Overrides = (), registry: Registry | None = None) -> Config:
@@ -145,8 +149,11 @@ class Config:
         data = Data(**checked_options(Data, table_of(tables, "data", places), "data", places))
         if data.creases is not None:
             tables = {**tables, "basis": {"name": CREASED_BASIS, **table_of(tables, "basis", places)}}
+        mesh = dict(table_of(tables, "mesh", places))
+        boundary = checked_value(Boundary, mesh.pop("boundary", "error"), "mesh.boundary", places)
+        tables = {**tables, "mesh": mesh}
         steps = {table: _step(table, table_of(tables, table, places), places) for table in STEPS}
-        return cls(steps, output, data, tuple(folder / file for file in files), places)
+        return cls(steps, output, data, tuple(folder / file for file in files), places, boundary)
 
     @property
     def mesh(self) -> Step:
@@ -220,6 +227,7 @@ class Config:
         found = {table: self._resolved(table, registry) for table in STEPS}
         if "size" in found["basis"]:
             found["basis"]["size"] = self.basis.options.get("size")
+        found["mesh"]["boundary"] = self.boundary
         return {**found, "data": asdict(self.data), "output": asdict(self.output)}
 
     def _resolved(self, table: str, registry: Registry) -> dict[str, Any]:

@@ -42,10 +42,11 @@ class Inspection(NamedTuple):
 def inspected(surface: OrbifoldSurface, output: Polyhedron, bisected: bool) -> Inspection:
     """The inspection of a surface by a mesh on it; bisected: the mesh cuts every triangle of the refined one alike."""
     fine = output if bisected else surface.tessellate(bisected=True)
-    mesh = surface.refinement.coarse
+    mesh = surface.own_mesh
     placed = output.with_vertices((output.vertices - surface.origin) / surface.scale)
     inside, outside = _volume(mesh), _volume(placed)
-    ratio = None if output.same.any() or not abs(inside) > 0 else outside / inside
+    closed = surface.triangulation.inside is None
+    ratio = outside / inside if closed and not output.same.any() and abs(inside) > 0 else None
     return Inspection(folded_share(surface, fine), self_intersecting(mesh), self_intersecting(output), ratio)
 
 

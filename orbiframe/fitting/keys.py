@@ -12,7 +12,7 @@ from typing import Any
 from orbiframe.components.options import Option, options_of
 from orbiframe.components.registry import Registry, resolve
 from orbiframe.errors import PluginError
-from orbiframe.fitting.config import STEPS, TABLES, Data, Output
+from orbiframe.fitting.config import STEPS, TABLES, Boundary, Data, Output
 from orbiframe.plugin import OPEN_NAMES, Component
 
 TABLE_MEANINGS = {
@@ -42,6 +42,12 @@ SELECTOR_MEANINGS = {
     "fitter": "name of a fitter: sliding, least-squares for the linear fit that sliding begins with, or "
     "smoothing, whose fairing cross-validation finds",
 }
+_BOUNDARY_MEANING = (
+    "what to do with a mesh that has a boundary: error, refuse it; else how it is closed for the map, while the "
+    "surface ends where the mesh ends: cap, over each loop; collar, with a strip about it first, which corners need; "
+    "double, with a second copy of mesh and strip, for long tubes; auto takes double for annuli and Möbius bands and "
+    "where collar loses many digits, else collar"
+)
 _RESULT_MEANINGS = {
     "data.means": "what the mesh means: facets, the polyhedron is the truth; smooth, its vertices lie on a smooth"
     " surface; semi-smooth, so they do where facets are curved; auto decides by the share of its "
@@ -85,6 +91,8 @@ def config_keys(registry: Registry) -> Iterator[ConfigKey]:
     for table in TABLES:
         if table in STEPS:
             yield from _step_keys(table, registry)
+            if table == "mesh":
+                yield ConfigKey("mesh", "boundary", Boundary, "error", _BOUNDARY_MEANING)
         else:
             yield from _result_keys(table, Data if table == "data" else Output)
 

@@ -29,9 +29,11 @@ from orbiframe.meshes.flat_flips import flat_flips
 from orbiframe.meshes.intrinsic_refinement import intrinsic_refinement
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.regular_triangles import regular_triangles
+from orbiframe.meshes.submesh import submesh
 from orbiframe.meshes.surface_type import SurfaceType
 from orbiframe.planes.geometry import Geometry
 from orbiframe.plugin import DEFAULT_MARKER
+from orbiframe.triangulations.beyond import density_beyond
 from orbiframe.triangulations.face_shapes import FaceShapes, face_shapes
 from orbiframe.triangulations.triangulation import Triangulation
 
@@ -67,8 +69,9 @@ class Mapped(NamedTuple):
 class Mapping:
     """The maps of one polyhedron of unit size.
 
-    triangles: its faces cut into triangles; maps: the refinement and the map for every longest edge that has been
-    needed so far.
+    triangles: its faces cut into triangles; inside: (F,), those of a mesh with a boundary, which the others only close,
+    None where all are; closing: how it was closed; maps: the refinement and the map for every longest edge that has
+    been needed so far.
     """
 
     polyhedron: Polyhedron
@@ -76,27 +79,35 @@ class Mapping:
     surface_type: SurfaceType
     config: Config
     stages: Stages
+    inside: NDArray[np.bool_] | None = None
+    closing: str = "none"
     maps: dict[float, Mapped] = field(default_factory=dict)
 
     @cached_property
     def flips(self) -> EdgeLog | None:
         """Needles in plane parts of the polyhedron, gone; an optimizer of its faces needs their own triangles."""
-        return flat_flips(self.triangles) if self.config.shape.open else None
+        return flat_flips(self.triangles, self.inside) if self.config.shape.open else None
 
     @property
     def facets(self) -> Polyhedron:
         """The triangles after the flips."""
         return self.triangles if self.flips is None else self.flips.after
 
+    @property
+    def own_facets(self) -> Polyhedron:
+        """Those that belong to the mesh, without those that only close it."""
+        return self.facets if self.inside is None else submesh(self.facets, self.inside).mesh
+
     def _refined(self, longest: float, vertices: int) -> Bisection:
         """The mesh with no edge longer than `longest`; needles by the thousand are not halved each for itself.
 
-        Where creases are kept, they are: a crease stays a chain of edges.
+        Where creases are kept, they are: a crease stays a chain of edges. So does a boundary.
         """
         log, expected = self.flips, triangles_made(self.facets, longest)
         if (
             log is not None
             and self.config.data.creases is None
+            and self.inside is None
             and expected > _NEEDLES * vertices + self.facets.face_count
         ):
             log = intrinsic_refinement(log, longest, _MOST * vertices)
@@ -158,7 +169,16 @@ class Mapping:
         )
         remedy = "map.method = 'auto'" + ("" if group is None else " or group.method = 'mesh'")
         _require_embedding(triangulation, f"the map of '{name}'", remedy)
-        return Mapped(refinement, triangulation, self._shaped(refinement, triangulation))
+        first = self._bounded(refinement, triangulation)
+        return Mapped(refinement, first, self._bounded(refinement, self._shaped(refinement, first)))
+
+    def _bounded(self, refinement: Bisection, triangulation: Triangulation) -> Triangulation:
+        """The map with the triangles marked that belong to the mesh, and with fewer functions on the others."""
+        if self.inside is None or triangulation.inside is not None:
+            return triangulation
+        marks = np.repeat(self.inside.astype(float), 3).reshape(-1, 3, 1)
+        marked = replace(triangulation, inside=refinement.spread(marks)[:, 0, 0] > 0.5)
+        return replace(marked, density=density_beyond(marked))
 
     def _geometry(self) -> Geometry:
         """The plane that the configuration names, or that of the Euler characteristic."""

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
+from orbiframe.functions.border_samples import with_border
 from orbiframe.functions.samples import Samples, coordinate_samples
 from orbiframe.functions.samples_of_sides import crease_samples
-from orbiframe.functions.smooth_samples import semi_smooth_samples, vertex_samples
+from orbiframe.functions.smooth_samples import inside_facets, semi_smooth_samples, vertex_samples
 from orbiframe.meshes.bending import bending, sharp_edges
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -16,6 +17,8 @@ from orbiframe.triangulations.triangulation import Triangulation
 SMOOTH, SEMI_SMOOTH, FACETS = "smooth", "semi-smooth", "facets"
 # Which facets beside creases stand for something curved.
 _CURVED: dict[str, Literal["none", "bent", "all"]] = {FACETS: "none", SEMI_SMOOTH: "bent", SMOOTH: "all"}
+
+
 MEANINGS = ("auto", SMOOTH, SEMI_SMOOTH, FACETS)
 
 # Up to this share of its bending in sharp edges a mesh is taken for smooth, from the other one on for its facets.
@@ -42,8 +45,16 @@ class Meaning(NamedTuple):
         self, triangulation: Triangulation, refinement: Bisection, size: int, noise: float | None = None
     ) -> Samples:
         """What is approximated, by so many functions; noise: the rms error of a coordinate of a vertex, if known."""
-        area = vector_areas(refinement.coarse)
-        spacing = float(((area**2).sum(axis=1) ** 0.5).sum() / size) ** 0.5
+        area = (vector_areas(refinement.coarse) ** 2).sum(axis=1) ** 0.5
+        own = area if triangulation.inside is None else area[inside_facets(triangulation, refinement)]
+        spacing = float(own.sum() / size) ** 0.5
+        found = self._inside(triangulation, refinement, size, spacing, noise)
+        return with_border(found, triangulation, refinement, spacing, arcs=self.name != FACETS)
+
+    def _inside(
+        self, triangulation: Triangulation, refinement: Bisection, size: int, spacing: float, noise: float | None
+    ) -> Samples:
+        """The samples of the mesh without those of its boundary."""
         if triangulation.crease is not None:
             return crease_samples(triangulation, refinement, spacing, curved=_CURVED[self.name])
         if self.name == FACETS:
@@ -64,6 +75,8 @@ def meaning_of(mesh: Polyhedron, asked: str, size: int, creases: float | None = 
         return Meaning(asked, share, "as asked")
     if creases is not None:
         return _beside_creases(mesh, share, creases)
+    if mesh.edge_lengths @ bending(mesh).angle <= _FLAT * mesh.edge_lengths.sum():
+        return Meaning(FACETS, share, "it is flat")
     percent = f"{100 * share:.0f} % of its bending lies in edges of more than 40°"
     if share <= _SMOOTH:
         return Meaning(SMOOTH, share, percent)

@@ -63,7 +63,7 @@ def fit_parts(
 
 def _fitted(mesh: object, config: Config, registry: Registry, progress: Progress, maps: KeptMaps | None) -> Parts:
     whole = mesh_of(mesh, config, registry)
-    require_closed_surface(whole, several=True)
+    require_closed_surface(whole, several=True, boundary=config.boundary != "error")
     count = face_components(whole)[0]
     if count == 1:
         only = fit(whole, config, registry, progress, maps=maps)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -14,18 +15,17 @@ from orbiframe.components.registry import Registry
 from orbiframe.errors import TopologyError
 from orbiframe.files import gate
 from orbiframe.fitting.approximation import Approximations
+from orbiframe.fitting.closed_mesh import mapping_of
 from orbiframe.fitting.config import Config, Output
 from orbiframe.fitting.given_back import GivenBack
 from orbiframe.fitting.inspection import inspected
 from orbiframe.fitting.kept_maps import KeptMaps
 from orbiframe.fitting.limits import require_density
-from orbiframe.fitting.mapping import Mapping
 from orbiframe.fitting.report import report
 from orbiframe.fitting.settings import configured
 from orbiframe.fitting.stages import Progress, Stages
 from orbiframe.fitting.told import told
 from orbiframe.meshes.defects import require_closed_surface
-from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.meshes.foreign_meshes import polyhedron_of
 from orbiframe.meshes.orientation import oriented
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -65,7 +65,7 @@ def fit(
     maps: KeptMaps | None = None,
     **settings: Any,
 ) -> Result:
-    """The smooth surface of a closed polyhedron: `fit("shape.off", size=500)`.
+    """The smooth surface of a polyhedron: `fit("shape.off", size=500)`; with a boundary: `boundary="auto"` as well.
 
     mesh: the name of a file; a Polyhedron; a pair (vertices, faces); or a mesh of trimesh, PyVista, meshio or Open3D,
     see `Polyhedron.of`. config: by default that of an empty file; registry: by default all that is installed. progress:
@@ -73,10 +73,10 @@ def fit(
     standard error stream, False nothing. share: of the faces that a fine picture needs; maps: a folder from which maps
     to X/H are taken where they are there, and in which they are kept.
 
-    settings: what is to differ from the configuration: `size`, `tolerance`, `max_error`, `refine` and `fast=True` as on
-    the command line; a table by its name, `basis="ps2"` or `fitter={"name": "smoothing", "fairing": 1e-3}`. Raises
-    FormatError, TopologyError, MapError, FitError or ConfigError, each a sentence with a next step, and UsageError for
-    an unknown keyword or what is no mesh.
+    settings: what is to differ from the configuration: `size`, `tolerance`, `max_error`, `refine`, `boundary` and
+    `fast=True` as on the command line; a table by its name, `basis="ps2"` or
+    `fitter={"name": "smoothing", "fairing": 1e-3}`. Raises FormatError, TopologyError, MapError, FitError or
+    ConfigError, each a sentence with a next step, and UsageError for an unknown keyword or what is no mesh.
 
     >>> import orbiframe
     >>> result = orbiframe.fit("dataset:torus", size=60)
@@ -95,23 +95,22 @@ def _fitted(mesh: object, config: Config, stages: Stages, share: float) -> Resul
     registry = stages.registry
     config = config.checked(registry)
     polyhedron = mesh if isinstance(mesh, Polyhedron) else stages("read", mesh_of, mesh, config, registry)
-    surface_type = stages("topology", require_closed_surface, polyhedron)
+    surface_type = stages("topology", partial(require_closed_surface, boundary=config.boundary != "error"), polyhedron)
     require_density(config.output.refine, int((polyhedron.face_sizes - 2).sum()), config.places)
     unit, origin, scale = _normalised(oriented(without_unused_vertices(polyhedron)))
-    triangles = stages("triangles", triangulated, unit)
-    mapping = Mapping(unit, triangles, surface_type, config, stages)
+    mapping = mapping_of(unit, config, stages)
     found = Approximations(mapping, config, stages).wanted()
     surface = replace(found.surface, origin=origin, scale=scale)
     output = stages("tessellation", _tessellated, surface, config.output, share * _OUTPUT_FACES)
     require_told_by_ends(output, surface_type)
     inspection = stages("inspection", inspected, surface, output, config.output.refine is None)
-    summary = report(surface, surface_type, unit, config, found, output, inspection, stages.seconds)
+    summary = report(surface, surface_type, mapping, config, found, output, inspection, stages.seconds)
     return Result(surface, output, summary)
 
 
 def _tessellated(surface: OrbifoldSurface, output: Output, wanted: float) -> Polyhedron:
     """Every triangle of the input cut alike, or the refined mesh cut so that it has about as many faces as wanted."""
-    faces, bisected = surface.triangulation.polyhedron.face_count, output.refine is None
+    faces, bisected = len(surface.triangulation.own_faces), output.refine is None
     density = max(1, round(math.sqrt(wanted / faces))) if output.refine is None else output.refine
     mesh = surface.tessellate(density, bisected=bisected)
     return replace(mesh, corner_uv=texture_coordinates(surface, density, bisected=bisected)) if output.uv else mesh

@@ -13,10 +13,12 @@ from orbiframe.fitting.accuracy import Accuracy
 from orbiframe.fitting.approximation import Approximation
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.inspection import Inspection
-from orbiframe.meshes.face_diagonals import RULE
+from orbiframe.fitting.mapping import Mapping
+from orbiframe.meshes.face_diagonals import RULE, cut_into_triangles
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
 from orbiframe.meshes.surface_type import SurfaceType
+from orbiframe.surfaces.border import Border
 from orbiframe.surfaces.crease_quality import crease_quality
 from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.surfaces.texture_coordinates import texture_distortion
@@ -31,7 +33,7 @@ _PACKAGES = ("orbiframe", "numpy", "scipy", "numba")
 def report(
     surface: OrbifoldSurface,
     surface_type: SurfaceType,
-    polyhedron: Polyhedron,
+    mapping: Mapping,
     config: Config,
     found: Approximation,
     output: Polyhedron,
@@ -40,7 +42,7 @@ def report(
 ) -> dict[str, Any]:
     """All that a user should know of a fit, with plain numbers and strings only."""
     triangulation = surface.triangulation
-    area_in_space = float(np.linalg.norm(vector_areas(triangulation.polyhedron), axis=1).sum())
+    area_in_space = float(np.linalg.norm(vector_areas(triangulation.polyhedron), axis=1)[triangulation.own_faces].sum())
     quality = crease_quality(surface)
     rms, largest = found.accuracy.against(found.meaning.smooth)
     return {
@@ -51,7 +53,8 @@ def report(
             "genus": surface_type.genus,
             "components": surface_type.components,
         },
-        "triangles": _cut_report(polyhedron, surface.refinement.coarse),
+        "boundary": _border_report(found.accuracy.border, mapping, found.meaning.smooth),
+        "triangles": _cut_report(mapping.polyhedron, surface.refinement.coarse),
         "geometry": triangulation.orbifold.geometry.name,
         "group": {
             "source": triangulation.group,
@@ -59,7 +62,7 @@ def report(
             "relation_defect": triangulation.relation_defect,
         },
         "map": _map_report(triangulation),
-        "faces": _faces_report(*found.mapped.face_shapes(polyhedron)),
+        "faces": _faces_report(*found.mapped.face_shapes(mapping.polyhedron), _own_faces(mapping)),
         "data": {
             "means": found.meaning.name,
             "reason": found.meaning.reason,
@@ -95,9 +98,26 @@ def report(
     }
 
 
-def _faces_report(now: FaceShapes, before: FaceShapes | None) -> dict[str, Any]:
-    """The shapes of the faces of the polyhedron in X, and before an optimizer changed them, if one did."""
-    return {**now.summary(), "before": None if before is None else before.summary()}
+def _border_report(border: Border | None, mapping: Mapping, smooth: bool) -> dict[str, Any] | None:
+    """The boundary, how the mesh was closed for the map, and how near the boundary of the surface is to it."""
+    if border is None:
+        return None
+    parts = (border.vertices_to_surface,) if smooth else (border.mesh_to_surface, border.surface_to_mesh)
+    rms, largest = (max(column) for column in zip(*parts, strict=True))
+    closed = {"closed_by": mapping.closing, "closed_to": mapping.surface_type.name}
+    return {"loops": border.loops, **closed, "rms": rms, "max": largest, "least_element": border.least_element}
+
+
+def _own_faces(mapping: Mapping) -> int:
+    """The number of faces of the polyhedron that do not only close it: they come first."""
+    if mapping.inside is None:
+        return mapping.polyhedron.face_count
+    return int(cut_into_triangles(mapping.polyhedron).face[mapping.inside].max()) + 1
+
+
+def _faces_report(now: FaceShapes, before: FaceShapes | None, count: int) -> dict[str, Any]:
+    """The shapes of the first faces of the polyhedron in X, and before an optimizer changed them, if one did."""
+    return {**now.first(count).summary(), "before": None if before is None else before.first(count).summary()}
 
 
 def _distances_report(accuracy: Accuracy, surface: OrbifoldSurface) -> dict[str, Any]:
@@ -130,14 +150,16 @@ def _cut_report(polyhedron: Polyhedron, triangles: Polyhedron) -> dict[str, Any]
 
 
 def _map_report(triangulation: Triangulation) -> dict[str, Any]:
-    weights = np.linalg.norm(vector_areas(triangulation.polyhedron), axis=1)
-    median, p95 = _weighted_quantiles(triangulation.angle_distortion, weights, [0.5, 0.95])
+    own = triangulation.own_faces
+    weights = np.linalg.norm(vector_areas(triangulation.polyhedron), axis=1)[own]
+    distortion = triangulation.angle_distortion[own]
+    median, p95 = _weighted_quantiles(distortion, weights, [0.5, 0.95])
     return {
         "triangles": triangulation.polyhedron.face_count,
         "not_positive": triangulation.not_positive,
         "area_defect": triangulation.area_defect,
         "crowding": _crowding_report(triangulation),
-        "angle_distortion": {"median": median, "p95": p95, "max": float(triangulation.angle_distortion.max())},
+        "angle_distortion": {"median": median, "p95": p95, "max": float(distortion.max())},
         "weights": triangulation.weights,
     }
 

@@ -22,6 +22,8 @@ Bools = NDArray[np.bool_]
 
 # So many samples are taken of each part; what a product lacks to a whole number by rounding.
 _PER_PART, _WHOLE = 10, 1e-9
+# How much fairness counts on triangles that only close a mesh, and how little they count for the stretch beside them.
+_BEYOND, _TRACE = 1e-2, 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +42,9 @@ class Samples:
 
     normals: (n, 3), the unit normal of what each sample of a surface lies on, nan where it is that of the surface to be
     found; still: (n,), the samples that do not slide along the surface, as where creases would be crossed; None for
-    none. Raises FitError if the shapes do not fit, for a value that is not finite, and for another number that is
-    negative or not finite.
+    none; held: (n,), the samples that the surface passes through at their own parameters, all coordinates of which
+    count alike, as those of a boundary; None for none. Raises FitError if the shapes do not fit, for a value that is
+    not finite, and for another number that is negative or not finite.
     """
 
     points: Points
@@ -54,6 +57,7 @@ class Samples:
     noise: float | None = None
     normals: Floats | None = None
     still: Bools | None = None
+    held: Bools | None = None
 
     __repr__ = one_line
 
@@ -70,7 +74,7 @@ class Samples:
             numbers = getattr(self, "weights" if name == "weight" else name)
             if numbers is not None:
                 _require(name, np.isfinite(numbers) & (numbers >= 0), numbers, "finite and not negative")
-        sizes = [np.shape(table) for table in (self.normals, self.still) if table is not None]
+        sizes = [np.shape(table) for table in (self.normals, self.still, self.held) if table is not None]
         if any(size not in ((count, 3), (count,)) for size in sizes):
             raise FitError(f"{count} samples have normals and flags of shapes {sizes}; they must be (n, 3) and (n,)")
 
@@ -84,8 +88,8 @@ class Samples:
         points = Points(self.points.patch[chosen], self.points.x[chosen])
         numbers = self.values[chosen], self.weights[chosen], self.stretch[chosen]
         area, length = _taken(self.area, chosen), _taken(self.length, chosen)
-        normals, still = _taken(self.normals, chosen), _taken(self.still, chosen)
-        return Samples(points, *numbers, area, length, self.order, self.noise, normals, still)
+        marks = (_taken(table, chosen) for table in (self.normals, self.still, self.held))
+        return Samples(points, *numbers, area, length, self.order, self.noise, *marks)
 
 
 def _taken(table: Any, chosen: Ints) -> Any:
@@ -110,7 +114,7 @@ def coordinate_samples(triangulation: Triangulation, most: int | None = None) ->
     samples = places(triangulation)
     if most is not None and len(samples.weights) > most:
         samples = _evenly(samples, triangulation.polyhedron, most)
-    return samples.take(np.flatnonzero(samples.weights > 0))
+    return samples.take(np.flatnonzero(samples.shares > 0))
 
 
 def _evenly(samples: Samples, mesh: Polyhedron, most: int) -> Samples:
@@ -119,35 +123,56 @@ def _evenly(samples: Samples, mesh: Polyhedron, most: int) -> Samples:
     Parts are what is nearest to vertices that are spread evenly, by the lengths of edges. Of those of one part as many
     are left out between any two that are kept.
     """
-    graph, area = edge_graph(mesh), samples.weights.sum()
+    graph, area = edge_graph(mesh), samples.shares.sum()
     parts = covering_points(graph, float(np.sqrt(_PER_PART * area / most)))
     owner = dijkstra_forest(graph, parts).owner
     part = np.concatenate([owner, owner[mesh.triangles[:, 0]]])
-    weight, count = np.bincount(part, weights=samples.weights), np.bincount(part)
+    weight, count = np.bincount(part, weights=samples.shares), np.bincount(part)
     wanted = np.minimum(np.ceil(most * weight / area), count)
     order = np.argsort(part, kind="stable")
     place = np.arange(len(part)) - np.repeat(np.cumsum(count) - count, count)
     share = (wanted / count)[part[order]]
     kept = np.sort(order[np.floor((place + 1) * share + _WHOLE) > np.floor(place * share + _WHOLE)])
-    left = np.bincount(part[kept], weights=samples.weights[kept], minlength=len(count))
+    left = np.bincount(part[kept], weights=samples.shares[kept], minlength=len(count))
     factor = weight / np.maximum(left, np.finfo(float).tiny)
-    found = samples.take(kept)
-    return replace(found, weights=found.weights * factor[part[kept]])
+    found, factor = samples.take(kept), factor[part[kept]]
+    area_of_each = None if found.area is None else found.area * factor
+    return replace(found, weights=found.weights * factor, area=area_of_each)
 
 
 def places(triangulation: Triangulation) -> Samples:
-    """The same at all vertices, then all centroids, those without area too."""
-    mesh = triangulation.polyhedron
+    """The same at all vertices, then all centroids, those without area too.
+
+    Triangles that only close the mesh have no values, and ask for fairness a hundred times less.
+    """
+    mesh, inside = triangulation.polyhedron, triangulation.inside
     area = np.linalg.norm(vector_areas(mesh), axis=1)
-    count = len(mesh.vertices)
-    around = np.bincount(mesh.tail, weights=np.repeat(area, 3), minlength=count)
-    image = np.bincount(mesh.tail, weights=np.repeat(triangulation.areas, 3), minlength=count)
+    # The stretch at a boundary is that of the mesh.
+    counted = np.ones(mesh.face_count) if inside is None else np.where(inside, 1.0, _TRACE)
+    around = _around(mesh, area * counted)
+    image = _around(mesh, triangulation.areas * counted)
     centroids = triangulation.locate(np.arange(mesh.face_count), np.full((mesh.face_count, 3), 1 / 3))
     points = Points(
         np.concatenate([triangulation.patch, centroids.patch]), np.concatenate([triangulation.points, centroids.x])
     )
     values = np.concatenate([mesh.vertices, mesh.vertices[mesh.triangles].mean(axis=1)])
-    weights = np.concatenate([around / 12, 0.75 * area])
     tiny = np.finfo(float).tiny
     stretch = np.concatenate([image / np.maximum(around, tiny), triangulation.areas / np.maximum(area, tiny)])
-    return Samples(points, values, weights, stretch)
+    if inside is None:
+        return Samples(points, values, _shared(mesh, area), stretch)
+    return Samples(points, values, _shared(mesh, area * inside), stretch, _shared(mesh, area * fair_shares(inside)))
+
+
+def fair_shares(inside: Bools) -> Floats:
+    """How much triangles ask for fairness, (F,): those that only close the mesh a hundred times less."""
+    return np.where(inside, 1.0, _BEYOND)
+
+
+def _shared(mesh: Polyhedron, area: Floats) -> Floats:
+    """The areas of triangles shared out to their corners and centroids, (V + F,)."""
+    return np.concatenate([_around(mesh, area) / 12, 0.75 * area])
+
+
+def _around(mesh: Polyhedron, of_face: Floats) -> Floats:
+    """The sum of a quantity of triangles over those about each vertex, (V,)."""
+    return np.asarray(np.bincount(mesh.tail, weights=np.repeat(of_face, 3), minlength=len(mesh.vertices)), dtype=float)

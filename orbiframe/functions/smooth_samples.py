@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.functions.samples import Samples, places
+from orbiframe.functions.samples import Samples, fair_shares, places
 from orbiframe.meshes.bending import SHARP, bending
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -32,12 +32,13 @@ def vertex_samples(triangulation: Triangulation, refinement: Bisection, noise: f
     A vertex counts like a third of the area of its triangles. The length of fairness is that of the facets about.
     noise: the root mean square error of each coordinate of the vertices, where it is known.
     """
-    mesh, coarse = triangulation.polyhedron, refinement.facets
+    mesh, coarse, inside = triangulation.polyhedron, refinement.facets, inside_facets(triangulation, refinement)
     area, count = np.linalg.norm(vector_areas(coarse), axis=1), len(refinement.coarse.vertices)
     everywhere = places(triangulation).take(np.arange(len(mesh.vertices)))
     weights, values = np.zeros(len(mesh.vertices)), mesh.vertices.copy()
-    weights[:count], values[:count] = around_vertices(coarse, area / 3)[:count], coarse.vertices[:count]
-    share = around_vertices(mesh, np.linalg.norm(vector_areas(mesh), axis=1) / 3)
+    weights[:count], values[:count] = around_vertices(coarse, area * inside / 3)[:count], coarse.vertices[:count]
+    fair = 1.0 if triangulation.inside is None else fair_shares(triangulation.inside)
+    share = around_vertices(mesh, fair * np.linalg.norm(vector_areas(mesh), axis=1) / 3)
     length = lengths(triangulation, refinement, _evened(coarse, area))[: len(mesh.vertices)]
     return _fair(Samples(everywhere.points, values, weights, everywhere.stretch, share, length, 3, noise))
 
@@ -51,7 +52,8 @@ def semi_smooth_samples(triangulation: Triangulation, refinement: Bisection, spa
     """
     coarse, flat = refinement.facets, refinement.polyhedron
     area = np.linalg.norm(vector_areas(coarse), axis=1)
-    sagitta = sagittas(coarse, area)
+    inside = inside_facets(triangulation, refinement)
+    sagitta = np.where(inside, sagittas(coarse, area, apart=inside), 0)
     everywhere = places(triangulation)
     share = 1 / (1 + (at_samples(triangulation, refinement, sagitta) / (_SAGITTA * spacing)) ** 2)
     weights, count = everywhere.weights * share, len(refinement.coarse.vertices)
@@ -59,7 +61,7 @@ def semi_smooth_samples(triangulation: Triangulation, refinement: Bisection, spa
     long = np.maximum(lengths(triangulation, refinement, area), spacing)
     length = np.where(at_samples(triangulation, refinement, (sagitta > 0).astype(float)) > 0.5, long, spacing)
     values = np.concatenate([flat.vertices, flat.vertices[flat.triangles].mean(axis=1)])
-    return _fair(Samples(everywhere.points, values, weights, everywhere.stretch, everywhere.weights, length, 3))
+    return _fair(Samples(everywhere.points, values, weights, everywhere.stretch, everywhere.shares, length, 3))
 
 
 def _fair(samples: Samples) -> Samples:
@@ -67,13 +69,23 @@ def _fair(samples: Samples) -> Samples:
     return samples.take(np.flatnonzero((samples.weights > 0) | (samples.shares > 0)))
 
 
-def sagittas(mesh: Polyhedron, area: Floats, crease: Bools | None = None) -> Floats:
+def inside_facets(triangulation: Triangulation, refinement: Bisection) -> Bools:
+    """Which of the facets belong to the mesh, (F,), and do not only close it."""
+    if triangulation.inside is None:
+        return np.ones(refinement.facets.face_count, dtype=np.bool_)
+    return np.asarray(triangulation.inside[refinement.in_facets()])
+
+
+def sagittas(mesh: Polyhedron, area: Floats, crease: Bools | None = None, *, apart: Bools | None = None) -> Floats:
     """For each triangle the largest of angle times height / 8 over its edges that are bent but not sharp.
 
     crease: (H,), which edges are sharp, by default those that bend by more than 40 degrees. Where creases are known, a
-    triangle that is much wider than its neighbour is the plane in which a round ends, and no arc.
+    triangle that is much wider than its neighbour is the plane in which a round ends, and no arc. apart: (F,), a mark;
+    no triangle is bent where one beside it has another mark.
     """
     angle = bending(mesh).angle
+    if apart is not None:
+        angle = np.where(apart[mesh.face] == apart[mesh.face[mesh.twin]], angle, 0)
     curved = np.where((angle > _FLAT) & ~(angle >= SHARP if crease is None else crease), angle, 0.0)
     height = 2 * area[mesh.face] / np.maximum(mesh.edge_lengths, np.finfo(float).tiny)
     if crease is not None:

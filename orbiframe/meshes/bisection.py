@@ -67,6 +67,13 @@ class Bisection:
             active = active[self.side[node[active]] >= 0]
         return self.child[node], weights
 
+    def in_facets(self) -> Ints:
+        """One of the fine triangles of each facet, (F,)."""
+        node = np.arange(self.facets.face_count)
+        while (inner := self.side[node] >= 0).any():
+            node[inner] = self.child[node[inner]]
+        return np.asarray(self.child[node])
+
     def composed(self, steps: Floats) -> Floats:
         """Products along the halfedges of the coarse mesh, (3F, k, k), of matrices on those of the fine one.
 

@@ -22,6 +22,7 @@ from orbiframe.meshes.surface_type import SurfaceType, _used_vertices, surface_t
 
 Ints = NDArray[np.intp]
 
+_OPEN, _BOUNDARY = "open edges", "--boundary auto"
 _SPLIT = "--split-nonmanifold-vertices"
 _SHARED_ENDS = (
     "; if several edges are meant to join the same two vertices, faces as lists of vertices cannot tell them apart: "
@@ -72,18 +73,19 @@ def defects_of(polyhedron: Polyhedron) -> list[Defect]:
     return [defect for defect in found if defect is not None]
 
 
-def require_closed_surface(polyhedron: Polyhedron, *, several: bool = False) -> SurfaceType:
+def require_closed_surface(polyhedron: Polyhedron, *, several: bool = False, boundary: bool = False) -> SurfaceType:
     """The surface type of a polyhedron that is one closed connected surface; raises TopologyError otherwise.
 
-    several: any number of closed surfaces will do.
+    several: any number of closed surfaces will do; boundary: they may have one, and then are not closed.
     """
     if polyhedron.face_count == 0:
         raise TopologyError("the mesh has no faces; give a closed polyhedron")
-    fatal = [defect for defect in defects_of(polyhedron) if defect.fatal]
+    fatal = [defect for defect in defects_of(polyhedron) if defect.fatal and not (boundary and defect.kind == _OPEN)]
     if fatal and not (several and all(defect.kind == "components" for defect in fatal)):
         reasons = "; ".join(f"{defect} ({defect.where})" for defect in fatal)
         advice = _advice(fatal) + (_SHARED_ENDS if _may_share_ends(polyhedron) else "")
-        raise TopologyError(f"the mesh is not one closed connected surface: {reasons}; {advice}")
+        wanted = "connected" if boundary else "closed connected"
+        raise TopologyError(f"the mesh is not one {wanted} surface: {reasons}; {advice}")
     return surface_type(polyhedron)
 
 
@@ -177,7 +179,7 @@ def _broken_edges(polyhedron: Polyhedron, joints: Seams) -> list[Defect]:
         i, j = ends[open_edges[0]]
         face = polyhedron.face[alone[first[open_edges[0]]]]
         where = f"{loops}; first edge {i}-{j} of face {face}"
-        found.append(Defect("open edges", len(open_edges), where, True, _weld(joints)))
+        found.append(Defect(_OPEN, len(open_edges), where, True, _weld(joints) or _BOUNDARY))
     crowded = np.flatnonzero(count > 2)
     if len(crowded):
         shown = [(ends[k], polyhedron.face[alone[inverse.ravel() == k]]) for k in crowded[:3]]

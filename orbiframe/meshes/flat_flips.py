@@ -8,6 +8,7 @@ where the points and the edges of the triangles before have gone.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from orbiframe.compiled.decorator import compiled
 from orbiframe.meshes.edge_log import EdgeLog, after, flip
@@ -18,16 +19,18 @@ _TIE = 1e-6  # corners on one circle up to this keep the edge that they have: a 
 _FLIPS_PER_HALFEDGE = 20
 
 
-def flat_flips(mesh: Polyhedron) -> EdgeLog:
+def flat_flips(mesh: Polyhedron, inside: NDArray[np.bool_] | None = None) -> EdgeLog:
     """The flips that make the plane parts of a closed triangle mesh Delaunay.
 
     An edge is flipped if the sum of the two angles opposite to it is more than pi, if its two triangles lie in a plane
     up to 1e-9 of the box's diagonal, and if they make a convex quadrilateral. Edges whose twin runs the same way stay.
+    So do those between faces that are marked as inside, (F,), and others.
     """
     tail, twin = mesh.tail.copy(), mesh.twin.copy()
     limit = _FLIPS_PER_HALFEDGE * len(tail)
     flat = _FLAT * mesh.diagonal
-    halfedge, crossing = _flip_all(np.ascontiguousarray(mesh.vertices), tail, twin, mesh.same.copy(), flat, limit)
+    part = np.zeros(mesh.face_count, dtype=np.bool_) if inside is None else inside
+    halfedge, crossing = _flip_all(np.ascontiguousarray(mesh.vertices), tail, twin, mesh.same.copy(), part, flat, limit)
     return EdgeLog(mesh, halfedge, crossing)
 
 
@@ -96,7 +99,7 @@ def _shares(p, i, k, e, d, old, new):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _flip_all(p, tail, twin, same, flat, limit):  # type: ignore[no-untyped-def]
+def _flip_all(p, tail, twin, same, part, flat, limit):  # type: ignore[no-untyped-def]
     """Flip until no edge should be flipped; the halfedges of every flip and where its edges cross."""
     stack = [h for h in range(len(tail)) if h < twin[h]]
     waiting = np.zeros(len(tail), dtype=np.bool_)
@@ -109,7 +112,7 @@ def _flip_all(p, tail, twin, same, flat, limit):  # type: ignore[no-untyped-def]
         waiting[h] = False
         t = twin[h]
         k, m = tail[after(after(h))], tail[after(after(t))]
-        if h // 3 == t // 3 or same[h] or k == m:
+        if h // 3 == t // 3 or same[h] or k == m or part[h // 3] != part[t // 3]:
             continue
         wanted, old, new = _crossing(p, tail[h], tail[t], k, m, flat)
         if not wanted:

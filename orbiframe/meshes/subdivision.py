@@ -21,7 +21,8 @@ class Refinement:
 
     coarse, polyhedron: the mesh before and after; density: k; face: (V,) and barycentric: (V, 3), the place of every
     vertex of the fine mesh in the first face of the coarse one that holds it (a vertex in no face is given face 0).
-    The first vertices are the coarse ones; the fine triangles of coarse face f are f k^2 to (f + 1) k^2 - 1.
+    The first vertices are the coarse ones; the fine triangles of coarse face f are f k^2 to (f + 1) k^2 - 1. origin:
+    (F,), the coarse face of every fine one.
     """
 
     coarse: Polyhedron
@@ -29,6 +30,7 @@ class Refinement:
     density: int
     face: Ints
     barycentric: Floats
+    origin: Ints
 
 
 def refine(polyhedron: Polyhedron, density: int) -> Refinement:
@@ -52,7 +54,8 @@ def refine(polyhedron: Polyhedron, density: int) -> Refinement:
     tail = points[:, grid.triangles.ravel()].ravel()
     twin, same = _fine_twins(polyhedron, grid)
     offsets = np.arange(polyhedron.face_count * density**2 + 1) * 3
-    return Refinement(polyhedron, Polyhedron(vertices, offsets, tail, twin, same), density, face, weights)
+    origin = np.repeat(np.arange(polyhedron.face_count), density**2)
+    return Refinement(polyhedron, Polyhedron(vertices, offsets, tail, twin, same), density, face, weights, origin)
 
 
 def grid_of(density: int) -> Floats:

@@ -42,8 +42,10 @@ def refined_by_ends(polyhedron: Polyhedron, density: int) -> Refinement:
     halved = bisected(polyhedron, longest, simplicial=True)
     fine = refine(halved.polyhedron, density)
     whole = np.concatenate([np.tile(np.eye(3), (polyhedron.face_count, 1, 1)), _own_numbers(polyhedron)], axis=2)
-    place = np.einsum("nc,nck->nk", fine.barycentric, halved.spread(whole)[fine.face])
-    return replace(fine, coarse=polyhedron, face=np.rint(place[:, 3]).astype(np.intp), barycentric=place[:, :3])
+    parts = halved.spread(whole)
+    place = np.einsum("nc,nck->nk", fine.barycentric, parts[fine.face])
+    owner, origin = (np.rint(number).astype(np.intp) for number in (place[:, 3], parts[fine.origin, 0, 3]))
+    return replace(fine, coarse=polyhedron, face=owner, barycentric=place[:, :3], origin=origin)
 
 
 def _own_numbers(polyhedron: Polyhedron) -> np.ndarray:

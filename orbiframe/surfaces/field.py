@@ -14,12 +14,14 @@ from orbiframe.functions.basis import Basis
 from orbiframe.functions.fitter import Fitter, ValidatedFitter
 from orbiframe.functions.samples import Samples
 from orbiframe.orbifolds.atlas import Points
+from orbiframe.surfaces.border import inside
 from orbiframe.surfaces.nearest import nearest_points
 from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.surfaces.surface_integrals import integration
 
 Floats = NDArray[np.float64]
 
+_BEYOND = 1e-2
 FITTER = "smoothing"
 
 
@@ -116,12 +118,14 @@ def _columns(values: ArrayLike, count: int) -> Floats:
 def _samples(surface: OrbifoldSurface, basis: Basis, places: Points, values: Floats) -> Samples:
     """The data, which stand for the area in equal shares, and places all over the surface where fairness counts."""
     over, count = integration(surface, basis), len(values)
+    # Beyond a boundary there are no data, and fairness is asked for only as far as the functions need it.
+    fair = np.where(inside(surface, over.points), 1.0, _BEYOND)
     added, columns = len(over.area), values.shape[1]
     return Samples(
         Points(np.concatenate([places.patch, over.points.patch]), np.concatenate([places.x, over.points.x])),
         np.concatenate([values, np.zeros((added, columns))]),
-        np.concatenate([np.full(count, over.area.sum() / count), np.zeros(added)]),
+        np.concatenate([np.full(count, fair @ over.area / count), np.zeros(added)]),
         np.concatenate([np.ones(count), over.stretch]),
-        np.concatenate([np.zeros(count), over.area]),
+        np.concatenate([np.zeros(count), fair * over.area]),
         order=3,
     )

@@ -29,8 +29,8 @@ def folded_share(surface: OrbifoldSurface, fine: Polyhedron) -> float:
     a, b, c = np.moveaxis(((fine.vertices - surface.origin) / surface.scale)[fine.triangles], 1, 0)
     vector = np.cross(b - a, c - a)
     against = np.einsum("fi,fi->f", vector, fine.normals[fine.triangles].sum(axis=1)) < 0
-    each = fine.face_count // surface.triangulation.polyhedron.face_count
-    flagged = np.flatnonzero(against.reshape(-1, each).any(axis=1))
+    own = surface.triangulation.own_faces
+    flagged = own[against.reshape(len(own), -1).any(axis=1)]
     parts = [_turned_area(surface, flagged[start : start + _FACES]) for start in range(0, len(flagged), _FACES)]
     return float(2 * sum(parts) / np.linalg.norm(vector, axis=1).sum())
 

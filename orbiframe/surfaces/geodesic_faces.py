@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from orbiframe.delaunay.crease_domain import crease_triangulation
 from orbiframe.delaunay.site_triangulation import delaunay_of_vertices
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.submesh import submesh
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.surfaces.surface import OrbifoldSurface
@@ -27,13 +28,15 @@ class GeodesicFaces(NamedTuple):
     """Geodesic triangles that cover X/H, and how they are glued.
 
     gluing: a triangle mesh whose faces and twins are those of the triangles; where its vertices lie means nothing.
-    patch: (F,) and corners: (F, 3, 3), the corners of every triangle in the frame of one patch.
+    patch: (F,) and corners: (F, 3, 3), the corners of every triangle in the frame of one patch; of_input: whether they
+    are those of the input.
     """
 
     orbifold: Orbifold
     gluing: Polyhedron
     patch: Ints
     corners: Floats
+    of_input: bool = True
 
     @classmethod
     def of_triangulation(cls, triangulation: GeodesicTriangulation) -> GeodesicFaces:
@@ -42,7 +45,7 @@ class GeodesicFaces(NamedTuple):
         places = np.zeros((triangulation.vertex_count, 3))
         gluing = Polyhedron(places, offsets, triangulation.vertex.ravel(), triangulation.twin, triangulation.same)
         corners = triangulation.geometry.act(triangulation.placement[:, None], triangulation.corners)
-        return cls(triangulation.orbifold, gluing, triangulation.patch, corners)
+        return cls(triangulation.orbifold, gluing, triangulation.patch, corners, False)
 
     @property
     def areas(self) -> Floats:
@@ -71,7 +74,8 @@ def input_faces(surface: OrbifoldSurface) -> GeodesicFaces:
     A triangle of the input with sides that are geodesics of X is not what the map makes of it, and may be turned over
     where the map bends much; then all triangles are those of the Delaunay triangulation with the same vertices, none of
     which is folded. On a surface with creases they are the triangles of the domain of its functions, as creases are
-    edges of that.
+    edges of that. Those of a surface with a boundary are only its own, and where they
+    would fold those of the refined mesh.
     """
     if surface.triangulation.crease is not None:
         return GeodesicFaces.of_triangulation(crease_triangulation(surface.triangulation))
@@ -82,7 +86,14 @@ def input_faces(surface: OrbifoldSurface) -> GeodesicFaces:
     second, third = geometry.act(step[:, 0], x[:, 1]), geometry.act(geometry.inverse(step[:, 2]), x[:, 2])
     corners = np.stack([x[:, 0], second, third], axis=1)
     faces = GeodesicFaces(surface.orbifold, coarse, flat.patch[coarse.triangles[:, 0]], corners)
-    return faces if faces.whole else GeodesicFaces.of_triangulation(_delaunay(surface))
+    if flat.inside is None:
+        return faces if faces.whole else GeodesicFaces.of_triangulation(_delaunay(surface))
+    if faces.whole:
+        own = np.flatnonzero(surface.own)
+        return GeodesicFaces(surface.orbifold, surface.own_mesh, faces.patch[own], corners[own])
+    gluing, own = submesh(flat.polyhedron, flat.inside).mesh, flat.own_faces
+    first = flat.patch[flat.polyhedron.triangles[own, 0]]
+    return GeodesicFaces(surface.orbifold, gluing, first, flat.lifts[own], False)
 
 
 def _delaunay(surface: OrbifoldSurface) -> GeodesicTriangulation:

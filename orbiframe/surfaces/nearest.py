@@ -10,6 +10,7 @@ from orbiframe.errors import FitError
 from orbiframe.functions.basis import DifferentiableBasis
 from orbiframe.functions.feet import foot_points
 from orbiframe.orbifolds.atlas import Points
+from orbiframe.surfaces.border import inside, nearest_on_border
 from orbiframe.surfaces.surface import OrbifoldSurface
 
 Floats = NDArray[np.float64]
@@ -19,8 +20,9 @@ def nearest_points(surface: OrbifoldSurface, targets: Floats, steps: int = 8) ->
     """The points of X/H whose surface points are nearest to targets (n, 3), and their distances (n,).
 
     The search begins at the nearest point of the surface over the vertices of its triangulation, and goes on by
-    Newton's method: near the surface it finds the foot of the perpendicular to rounding. Raises FitError for a basis
-    without derivatives, and for targets that are not finite.
+    Newton's method: near the surface it finds the foot of the perpendicular to rounding. Where that lies beyond the
+    boundary of a surface, the nearest point of the boundary is meant. Raises FitError for a basis without derivatives,
+    and for targets that are not finite.
     """
     targets = np.asarray(targets, dtype=np.float64).reshape(-1, 3)
     bad = np.flatnonzero(~np.isfinite(targets).all(axis=1))
@@ -29,11 +31,17 @@ def nearest_points(surface: OrbifoldSurface, targets: Floats, steps: int = 8) ->
     if not isinstance(surface.basis, DifferentiableBasis):
         raise FitError("this basis knows no derivatives, which the search needs; use one that does, such as 'ps6'")
     wanted = (targets - surface.origin) / surface.scale
-    over = Points(surface.triangulation.patch, surface.triangulation.points)
+    triangulation = surface.triangulation
+    begin = np.unique(triangulation.polyhedron.triangles[triangulation.own_faces])
+    over = Points(triangulation.patch[begin], triangulation.points[begin])
     there = surface.basis.values(over, surface.coefficients)
     start = cKDTree(there).query(wanted)[1]
     longest = float(np.linalg.norm(np.ptp(there, axis=0))) / 10
     feet, distance = foot_points(
         surface.basis, surface.coefficients, Points(over.patch[start], over.x[start]), wanted, longest, steps
     )
+    outside = np.flatnonzero(~inside(surface, feet))
+    if len(outside):
+        ends, away = nearest_on_border(surface, wanted[outside])
+        feet.patch[outside], feet.x[outside], distance[outside] = ends.patch, ends.x, away
     return feet, distance * surface.scale

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -14,7 +15,8 @@ from orbiframe.errors import FitError
 from orbiframe.functions.basis import Basis, DifferentiableBasis
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.polyhedron import Polyhedron
-from orbiframe.meshes.subdivision import grid_of
+from orbiframe.meshes.subdivision import Refinement, grid_of
+from orbiframe.meshes.submesh import submesh
 from orbiframe.meshes.told_by_ends import refined_by_ends
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Orbifold
@@ -97,6 +99,19 @@ class OrbifoldSurface:
     basis_name: str = ""
     basis_options: Mapping[str, Any] = field(default_factory=dict)
 
+    @cached_property
+    def own(self) -> NDArray[np.bool_]:
+        """The triangles of the input that belong to the mesh, (F,); the others only close a mesh with a boundary."""
+        inside = self.triangulation.inside
+        facets = self.refinement.in_facets()[: self.refinement.coarse.face_count]
+        return np.ones(len(facets), dtype=np.bool_) if inside is None else np.asarray(inside[facets])
+
+    @property
+    def own_mesh(self) -> Polyhedron:
+        """The triangles of the input, of a mesh with a boundary without those that only close it."""
+        coarse = self.refinement.coarse
+        return coarse if self.triangulation.inside is None else submesh(coarse, self.own).mesh
+
     @property
     def orbifold(self) -> Orbifold:
         """The parameter domain X/H."""
@@ -145,10 +160,13 @@ class OrbifoldSurface:
     def total_curvature(self, order: int = 4) -> float:
         """The integral of the Gaussian curvature over the surface: 2 pi chi by Gauss and Bonnet where it is immersed.
 
+        That of a surface with a boundary is 2 pi chi without `boundary_turning`.
+
         order: Gauss points along each direction of every triangle of the triangulation.
         """
-        geometry, lifts = self.orbifold.geometry, self.triangulation.lifts
-        first_patch = self.triangulation.patch[self.triangulation.polyhedron.triangles[:, 0]]
+        geometry, own = self.orbifold.geometry, self.triangulation.own_faces
+        lifts = self.triangulation.lifts[own]
+        first_patch = self.triangulation.patch[self.triangulation.polyhedron.triangles[own, 0]]
         total = 0.0
         for start in range(0, len(lifts), max(_CHUNK // order**2, 1)):
             part = slice(start, start + max(_CHUNK // order**2, 1))
@@ -156,6 +174,16 @@ class OrbifoldSurface:
             bent = self._unit_curvature(Points(np.repeat(first_patch[part], order**2), x.reshape(-1, 3)))
             total += float(np.abs(weights).ravel() @ (bent.gaussian * bent.element))
         return total
+
+    def boundary_turning(self, order: int = 4) -> float:
+        """By how much the boundary turns within the surface: the integral of its geodesic curvature, and its corners.
+
+        With the total curvature it is 2 pi chi (Gauss and Bonnet); 0 for a closed surface. order: Gauss points of every
+        edge of the triangulation. Raises FitError for a basis without derivatives.
+        """
+        from orbiframe.surfaces.border import turning
+
+        return turning(self, order)
 
     def nearest(self, targets: ArrayLike) -> tuple[Points, Floats]:
         """The points of X/H whose surface points are nearest to points in space (n, 3), and the distances (n,).
@@ -179,7 +207,7 @@ class OrbifoldSurface:
         """
         from orbiframe.surfaces.shaded_mesh import VIEW, shaded_picture
 
-        faces = self.triangulation.polyhedron.face_count
+        faces = len(self.triangulation.own_faces)
         mesh = self.tessellate(max(1, round((_PICTURED / faces) ** 0.5)), bisected=True)
         made = shaded_picture(mesh, width=width, view=VIEW if view is None else view)
         if path is not None:
@@ -216,13 +244,22 @@ class OrbifoldSurface:
             face, barycentric = self.refinement.locate(face, barycentric)
         points = self.triangulation.locate(face, barycentric)
         if not isinstance(self.basis, DifferentiableBasis):
-            return Tessellation(self._in_unit(mesh.polyhedron.with_vertices(self.evaluate(points))), points)
+            return self._bounded(mesh.polyhedron.with_vertices(self.evaluate(points)), points, mesh, bisected)
         d = self._derivatives(points, 1)
         normals = _unit(np.cross(d[1], d[2])) * self.triangulation.face_signs[face, None]
         placed = mesh.polyhedron.with_vertices(self.origin + self.scale * d[0], normals)
         if self.triangulation.crease is not None:
             placed = replace(placed, corner_normals=self._corner_normals(placed, face, barycentric, density, bisected))
-        return Tessellation(self._in_unit(placed), points)
+        return self._bounded(placed, points, mesh, bisected)
+
+    def _bounded(self, mesh: Polyhedron, points: Points, refined: Refinement, bisected: bool) -> Tessellation:
+        """A tessellation without what only closes the mesh."""
+        mesh = replace(mesh, unit=self.unit)
+        if self.triangulation.inside is None:
+            return Tessellation(mesh, points)
+        coarse = self.triangulation.inside if bisected else self.own
+        found = submesh(mesh, coarse[refined.origin])
+        return Tessellation(found.mesh, Points(points.patch[found.vertices], points.x[found.vertices]))
 
     def _corner_normals(
         self, mesh: Polyhedron, face: Ints, barycentric: Floats, density: int, bisected: bool
@@ -252,9 +289,6 @@ class OrbifoldSurface:
     def unit(self) -> str | None:
         """The unit of coordinates, as far as the mesh has one: "millimetre" or "metre"."""
         return self.refinement.coarse.unit
-
-    def _in_unit(self, mesh: Polyhedron) -> Polyhedron:
-        return replace(mesh, unit=self.unit)
 
     def _unit_curvature(self, points: Points) -> Curvature:
         """The curvature of the surface before it is scaled: no square of a very large or very small number."""

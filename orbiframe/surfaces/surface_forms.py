@@ -55,6 +55,10 @@ class SurfaceForms:
         if not isinstance(chosen, DifferentiableBasis):
             raise FitError("this basis knows no derivatives, which gradients need; use one that does, such as 'ps6'")
         number = max(getattr(chosen, "degree", 0) + 1, _LEAST)
+        if surface.triangulation.inside is not None:
+            raise FitError(
+                "the surface has a boundary, and integrals of functions and equations are for closed surfaces so far"
+            )
         over = integration(surface, chosen, number)
         if on_x:
             return cls(chosen, over.points, over.area_on_x, np.tile([1.0, 0.0, 1.0], (len(over.area), 1)))

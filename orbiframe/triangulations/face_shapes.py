@@ -43,6 +43,11 @@ class FaceShapes:
             share = self.area / self.area.mean()
             return np.where(share > 0, np.maximum(share, 1 / share), np.inf)
 
+    def first(self, count: int) -> FaceShapes:
+        """Those of the first faces."""
+        few = slice(count)
+        return FaceShapes(self.corners[few], self.angle[few], self.adjacent[few], self.opposite[few], self.area[few])
+
     def summary(self) -> dict[str, Any]:
         """Median, 95th percentile, maximum and the worst face of each measure; angles in degrees, None for no face."""
         measures = {

@@ -31,13 +31,17 @@ class Girth(NamedTuple):
 
 
 def girth(triangulation: Triangulation) -> Girth:
-    """How the scale of the map changes; log s is averaged with its neighbours a few times against noise of the mesh."""
+    """How the scale of the map changes; log s is averaged with its neighbours a few times against noise of the mesh.
+
+    On triangles that only close the mesh it counts as constant.
+    """
     mesh = triangulation.polyhedron
     area = np.maximum(np.linalg.norm(vector_areas(mesh), axis=1), np.finfo(float).tiny)
     around = _around(triangulation, area)
     image = np.maximum(_around(triangulation, triangulation.areas), np.finfo(float).tiny)
     scale = averaged(triangulation, 0.5 * np.log(image / around), _ROUNDS)
     square = (_gradients(triangulation, scale, area) ** 2).sum(axis=1)
+    square = square if triangulation.inside is None else square * triangulation.inside
     slope = np.sqrt(averaged(triangulation, _around(triangulation, area * square) / around, 1))
     return Girth(slope, float(area @ square))
 
@@ -45,7 +49,8 @@ def girth(triangulation: Triangulation) -> Girth:
 def girth_radius(triangulation: Triangulation) -> float:
     """The radius of the thinnest parts: below it |grad log s| lies on 99 % of the surface, as an inverse."""
     slope = girth(triangulation).slope
-    area = _around(triangulation, np.linalg.norm(vector_areas(triangulation.polyhedron), axis=1))
+    size = np.linalg.norm(vector_areas(triangulation.polyhedron), axis=1)
+    area = _around(triangulation, size if triangulation.inside is None else size * triangulation.inside)
     order = np.argsort(slope)
     place = np.searchsorted(np.cumsum(area[order]), 0.99 * area.sum())
     return float(1 / max(slope[order[min(place, len(order) - 1)]], np.finfo(float).tiny))

@@ -31,7 +31,8 @@ class Triangulation:
     weights: which edge weights made the map, both in words for the report. density: (V,), how many functions there
     should be per length at each vertex beyond what the map alone asks for, up to a factor; None: the same everywhere.
     crease: (H,), the halfedges of creases, across which functions are only continuous; sites: (n,), the vertices that
-    the domain of splines then has, between which creases run along geodesics; None for none.
+    the domain of splines then has, between which creases run along geodesics; None for none. inside: (F,), the
+    triangles of a mesh with a boundary, which the others only close; None where all belong to the mesh.
 
     >>> from orbiframe import fit
     >>> map_to_x = fit("dataset:plate_genus2_coarse", size=60).surface.triangulation
@@ -51,8 +52,22 @@ class Triangulation:
     density: Floats | None = None
     crease: Bools | None = None
     sites: Ints | None = None
+    inside: Bools | None = None
 
     __repr__ = one_line
+
+    @property
+    def own_faces(self) -> Ints:
+        """The triangles that belong to the mesh, without those that only close it."""
+        return np.arange(self.polyhedron.face_count) if self.inside is None else np.flatnonzero(self.inside)
+
+    @cached_property
+    def border(self) -> Ints:
+        """The halfedges of the mesh's own triangles at its boundary; none where it is closed."""
+        if self.inside is None:
+            return np.empty(0, dtype=np.intp)
+        mesh = self.polyhedron
+        return np.flatnonzero(self.inside[mesh.face] & ~self.inside[mesh.face[mesh.twin]])
 
     @cached_property
     def corner_transitions(self) -> Ints:

@@ -80,7 +80,7 @@ def _made(args: argparse.Namespace, registry: Registry) -> _Made:
         if args.group or args.config or args.set:
             raise UsageError(f"{args.mesh} is a finished surface; --group, --config and --set belong to meshes")
         surface = load_surface(args.mesh, registry)
-        return _Made(surface, surface.refinement.coarse)
+        return _Made(surface, surface.own_mesh)
     chosen = [f"group.method={args.group}"] if args.group else []
     sized = args.surface or args.config or any(text.startswith("basis.") for text in args.set)
     config = Config.load(args.config, [*([] if sized else [_FEW]), *args.set, *chosen], registry)

@@ -15,13 +15,17 @@ if TYPE_CHECKING:
     from orbiframe_fields.vertex_curvature import VertexCurvature
 
 
+_BOUNDARY = ("error", "cap", "collar", "double", "auto")
+
+
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add("mesh", metavar="MESH", type=Path, help="closed surfaces, one or several, orientable or not, of any genus")
+    add("mesh", metavar="MESH", type=Path, help="surfaces, one or several, orientable or not, of any genus")
     add("-o", "--output", metavar="OUT", type=Path, required=True, help="the numbers at the vertices: .ply, .vtu, .csv")
     add("--config", metavar="FILE.toml", type=Path, help="components and options of the fit")
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=2000")
+    add("--boundary", choices=_BOUNDARY, help="of an open mesh: how it is closed for the map; default error")
     add("--json", action="store_true", help="print one JSON object instead of the summary")
     parser.set_defaults(run=run)
 
@@ -38,7 +42,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     from orbiframe_fields.vertex_curvature import curvature_of
 
     mesh = read(args.mesh, registry)
-    fitted = fitted_surfaces(mesh, args.config, args.set, registry, args.progress)
+    fitted = fitted_surfaces(mesh, args.config, [*args.set, *_boundary(args)], registry, args.progress)
     args.progress("curvature", None)
     start = time.perf_counter()
     found = curvature_of(mesh, fitted, registry)
@@ -46,6 +50,10 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     write_table(args.output, FieldTable(found.mesh, found.columns))
     print(json.dumps(_summary(found)) if args.json else "\n".join(_lines(found)))
     return 0
+
+
+def _boundary(args: argparse.Namespace) -> list[str]:
+    return [] if args.boundary is None else [f"mesh.boundary={args.boundary}"]
 
 
 def _summary(found: VertexCurvature) -> dict[str, Any]:

@@ -14,10 +14,13 @@ if TYPE_CHECKING:
     from orbiframe_fields.mesh_field import MeshField
 
 
+_BOUNDARY = ("error", "cap", "collar", "double", "auto")
+
+
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add("mesh", metavar="MESH", type=Path, help="closed surfaces, or a surface that `fit --save` wrote (.npz)")
+    add("mesh", metavar="MESH", type=Path, help="surfaces, or a surface that `fit --save` wrote (.npz)")
     add("data", metavar="DATA", type=Path, help="the values: a .csv file, or a mesh with attributes such as .ply, .vtu")
     add("-o", "--output", metavar="OUT", type=Path, required=True, help="the field: .ply, .vtu or .csv")
     add("--value", metavar="NAME", action="append", default=[], help="fit the values of this name, else all")
@@ -27,6 +30,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add("--config", metavar="FILE.toml", type=Path, help="components and options of the fit of the surface")
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=2000")
+    add("--boundary", choices=_BOUNDARY, help="of an open mesh: how it is closed for the map; default error")
     add("--json", action="store_true", help="print one JSON object instead of the summary")
     parser.set_defaults(run=run)
 

@@ -44,7 +44,8 @@ def fitted_surfaces(
     least: the least number of functions, as far as the most that are taken without being asked for.
     Raises what `fit` raises.
     """
-    require_closed_surface(mesh, several=True)
+    boundary = Config.load(config, options, registry).boundary
+    require_closed_surface(mesh, several=True, boundary=boundary != "error")
     found = []
     for vertices, part in _parts(mesh):
         size = int(np.clip(max(len(vertices), least), _LEAST, _MOST))

@@ -93,7 +93,8 @@ def mesh_field(args: argparse.Namespace, registry: Registry) -> MeshField:
         mesh = read(args.mesh, registry)
         data = read_data(args.data, mesh, args.value)
         least = _FUNCTIONS_PER_DATUM * len(data.places)
-        fitted = fitted_surfaces(mesh, args.config, args.set, registry, args.progress, least=least)
+        options = [*args.set, *([] if args.boundary is None else [f"mesh.boundary={args.boundary}"])]
+        fitted = fitted_surfaces(mesh, args.config, options, registry, args.progress, least=least)
         surfaces, vertices = [each.surface for each in fitted], [each.vertices for each in fitted]
     args.progress("field", None)
     start = time.perf_counter()
@@ -121,7 +122,7 @@ def _field(surface: OrbifoldSurface, points: Points, distance: Floats, own: Ints
 
 def _vertices_of(surface: OrbifoldSurface) -> Polyhedron:
     """The mesh of a saved surface, its triangles, in space."""
-    coarse = surface.refinement.coarse
+    coarse = surface.own_mesh
     return coarse.with_vertices(surface.origin + surface.scale * coarse.vertices)
 
 
@@ -129,7 +130,7 @@ def _tessellated(surface: OrbifoldSurface, refine: int | None, parts: int) -> tu
     """Every triangle of the input cut alike, or the refined mesh cut so that it has about as many faces as wanted."""
     if refine is not None:
         return surface.tessellation(refine)
-    faces = surface.triangulation.polyhedron.face_count
+    faces = len(surface.triangulation.own_faces)
     return surface.tessellation(max(1, round(math.sqrt(_OUTPUT_FACES / parts / faces))), bisected=True)
 
 

@@ -24,7 +24,8 @@ _NUMBERS = ("k1", "k2", "gaussian", "mean", "distance")
 
 
 class VertexCurvature(NamedTuple):
-    """A mesh, the numbers (V,) and vectors (V, 3) at its vertices by name, and the total curvature found and known.
+    """A mesh, the numbers (V,) and vectors (V, 3) at its vertices by name, and the total curvature found and known,
+    with the turning of the boundary where there is one.
 
     k1 >= k2 and their directions, their product and mean, the unit normal, and the distance of the vertex from the
     surface. Numbers are positive where the surface bends away from its normal, as a sphere does whose normals point
@@ -58,7 +59,7 @@ def curvature_of(mesh: Polyhedron, fitted: list[FittedSurface], registry: Regist
         arrows = -bent.normal, bent.along_most, bent.along_least
         for column, values in zip(vectors.values(), arrows, strict=True):
             column[each.vertices] = values
-        total += surface.total_curvature()
+        total += surface.total_curvature() + surface.boundary_turning()
         expected += 2 * math.pi * (len(each.vertices) - each.part.edge_count + each.part.face_count)
     if abs(total - expected) > _FOLDED * 2 * math.pi * len(fitted):
         warnings.warn(

@@ -20,6 +20,7 @@ from orbiframe_fitters.normal_equations import nearly_solved, solved
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
 
 _PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 _KIND = np.array([[0, 1, 2], [1, 3, 4], [2, 4, 5]])
@@ -201,8 +202,9 @@ class _Slide:
         return [self._slid_part(*each, coefficients) for each in zip(feet, self.data, self.longest, strict=True)]
 
     def _slid_part(self, feet: _Feet, part: Samples, longest: Floats, coefficients: Floats) -> _Feet:
-        if part.still is not None:
-            return self._slid_some(feet, part, longest, coefficients, np.flatnonzero(~part.still))
+        kept = [mark for mark in (part.still, part.held) if mark is not None]
+        if kept:
+            return self._slid_some(feet, part, longest, coefficients, np.flatnonzero(~np.logical_or.reduce(kept)))
         return self._slid_all(feet, part, longest, coefficients)
 
     def _slid_some(self, feet: _Feet, part: Samples, longest: Floats, coefficients: Floats, chosen: Ints) -> _Feet:
@@ -289,7 +291,13 @@ def _away(feet: _Feet, part: Samples) -> Floats:
     if part.still is None:
         return feet.distance
     height = np.abs(np.einsum("ni,ni->n", feet.gap, _known_normals(feet, part)[0]))
-    return np.where(part.still, height, feet.distance)
+    return np.where(_planes(part), height, feet.distance)
+
+
+def _planes(part: Samples) -> Bools:
+    """The data that keep their parameters, and of which distances from planes count."""
+    assert part.still is not None
+    return part.still if part.held is None else part.still & ~part.held
 
 
 def _known_normals(feet: _Feet, part: Samples) -> tuple[Floats, Floats]:
@@ -306,7 +314,8 @@ def _linearised(feet: _Feet, part: Samples, schedule: Schedule) -> tuple[Floats,
     weights, (normal, curvature) = part.weights, _known_normals(feet, part)
     away = np.linalg.norm(feet.gap, axis=1) * curvature
     pull = np.maximum(schedule.pull, away / (1 + away))
-    pull = pull if part.still is None else np.where(part.still, schedule.pull, pull)
+    pull = pull if part.still is None else np.where(_planes(part), schedule.pull, pull)
+    pull = pull if part.held is None else np.where(part.held, 1.0, pull)
     along = pull + schedule.damping
     form = np.stack([normal[:, a] * normal[:, b] for a, b in _PAIRS], axis=1) * np.maximum(1 - along, 0)[:, None]
     form[:, [0, 3, 5]] += along[:, None]

@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from orbiframe import Registry, UsageError
+from orbiframe import FitError, Registry, UsageError
 from orbiframe.files import require_apart, require_destination
 
 if TYPE_CHECKING:
@@ -76,17 +76,30 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
 
 def _surfaces(args: argparse.Namespace, registry: Registry) -> list[OrbifoldSurface]:
     """The saved surface, or those that are fitted to the components of the mesh."""
-    from orbiframe import Config, load_surface
+    from orbiframe import Config, load_surface, read
     from orbiframe.fitting import fit_parts
 
     if args.mesh.suffix.lower() == _SURFACE:
         if args.config or args.set or args.size is not None:
             raise UsageError(f"{args.mesh} is a finished surface; --config, --set and --size belong to meshes")
-        return [load_surface(args.mesh, registry)]
+        surface = load_surface(args.mesh, registry)
+        _require_closed(args, open_=surface.triangulation.inside is not None)
+        return [surface]
     size = [] if args.size is None else [f"basis.size={args.size}"]
     config = Config.load(args.config, [*args.set, *size], registry)
-    found = fit_parts(args.mesh, config, registry, args.progress)
+    mesh = read(args.mesh, registry, format=None if config.mesh.open else config.mesh.name)
+    _require_closed(args, open_=bool((mesh.twin < 0).any()))
+    found = fit_parts(mesh, config, registry, args.progress)
     return [result.surface for result in found.results]
+
+
+def _require_closed(args: argparse.Namespace, *, open_: bool) -> None:
+    """Raise FitError for a mesh or a surface with a boundary."""
+    if open_:
+        raise FitError(
+            f"{args.mesh} has a boundary, and only closed surfaces are meshed anew so far; `orbiframe fit MESH -o OUT "
+            "--boundary auto` writes triangles of even size too"
+        )
 
 
 def _require_order(args: argparse.Namespace) -> None:

@@ -50,6 +50,7 @@ def test_json_has_the_promised_keys(orbiframe, cube):
         "closed": True,
         "orientable": True,
         "euler_characteristic": 2,
+        "boundary": None,
         "genus": 0,
         "unit": None,
         "box": [[0, 0, 0], [1, 1, 1]],

@@ -1,0 +1,73 @@
+"""Closed mesh: what is mapped to X/H for a mesh with a boundary, and which of its triangles belong to the mesh."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe.errors import ConfigError, MapError
+from orbiframe.fitting.config import Config
+from orbiframe.fitting.mapping import Mapping
+from orbiframe.fitting.size import LEAST_SIZE
+from orbiframe.fitting.stages import Stages
+from orbiframe.meshes.closing import Closing, closed_by
+from orbiframe.meshes.face_diagonals import cut_into_triangles, triangulated
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.sizes import area
+from orbiframe.meshes.surface_type import surface_type
+from orbiframe.triangulations.lost_digits import crowding_of
+
+# A collar is as wide as so many functions of mean spacing.
+_FUNCTIONS_ACROSS = 6.0
+# A collar that costs more digits than this closes a long tube, which the double maps with all of them.
+_MOST_DIGITS = 10.0
+
+
+def mapping_of(mesh: Polyhedron, config: Config, stages: Stages) -> Mapping:
+    """The maps of a mesh of unit size; one with a boundary is closed first, as the configuration says.
+
+    "auto" takes the double of an annulus or a Möbius band, which is flat, else the collar; and the double where the map
+    of that fails, or loses many digits as those of long tubes do. Raises TopologyError for boundary loops that cannot
+    be closed.
+    """
+    if (mesh.twin >= 0).all():
+        triangles = stages("triangles", triangulated, mesh)
+        return Mapping(mesh, triangles, surface_type(mesh), config, stages)
+    if config.data.creases is not None:
+        raise ConfigError(
+            "creases (data.creases) are kept on closed meshes only so far; leave them out, or close the mesh in a mesh "
+            "editor"
+        )
+    if config.output.uv:
+        raise ConfigError(
+            "texture coordinates (output.uv, --uv) are made of closed surfaces only so far; leave them out"
+        )
+    if config.boundary != "auto":
+        return _closed(mesh, config.boundary, config, stages)  # type: ignore[arg-type]
+    if surface_type(mesh).euler_characteristic == 0:
+        return _closed(mesh, "double", config, stages)
+    collar = _closed(mesh, "collar", config, stages)
+    return collar if _is_good(collar) else _closed(mesh, "double", config, stages)
+
+
+def _is_good(mapping: Mapping) -> bool:
+    """Whether the mesh with a collar has a map of enough digits."""
+    try:
+        mapped = mapping.for_size(_size(mapping.config))
+    except MapError:
+        return False
+    return crowding_of(mapped.triangulation).digits_lost <= _MOST_DIGITS
+
+
+def _size(config: Config) -> int:
+    """The number of functions that is asked for, or the least that is taken."""
+    size = config.basis.options.get("size")
+    return LEAST_SIZE if size is None else int(size)
+
+
+def _closed(mesh: Polyhedron, how: Closing, config: Config, stages: Stages) -> Mapping:
+    width = _FUNCTIONS_ACROSS * float(np.sqrt(area(mesh) / _size(config)))
+    whole = stages("closing", closed_by, mesh, how, width)
+    triangles = stages("triangles", triangulated, whole)
+    own: NDArray[np.bool_] = cut_into_triangles(whole).face < mesh.face_count
+    return Mapping(whole, triangles, surface_type(whole), config, stages, own, how)

@@ -1,0 +1,26 @@
+"""Beyond: the part of a map that only closes a mesh with a boundary, where few functions are wanted."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orbiframe.meshes.edge_paths import dijkstra_forest, edge_graph
+from orbiframe.meshes.sizes import vector_areas
+from orbiframe.triangulations.triangulation import Triangulation
+
+Floats = NDArray[np.float64]
+
+# Beyond the boundary functions are as dense as on the mesh over this share of the root of its area; then fewer and
+# fewer, down to a least share of the density on the mesh.
+_WIDTH, _LEAST = 0.05, 0.25
+
+
+def density_beyond(triangulation: Triangulation) -> Floats:
+    """How many functions per length there should be at the vertices of a mesh with a boundary, (V,): 1 on the mesh."""
+    mesh, border = triangulation.polyhedron, triangulation.border
+    area = np.linalg.norm(vector_areas(mesh), axis=1)[triangulation.own_faces].sum()
+    away = dijkstra_forest(edge_graph(mesh, mesh.edge_lengths), np.unique(mesh.tail[border])).distance
+    away[np.unique(mesh.triangles[triangulation.own_faces])] = 0
+    width = _WIDTH * float(np.sqrt(area))
+    return np.maximum(1 / (1 + np.maximum(away / width - 1, 0)), _LEAST)
