@@ -38,11 +38,15 @@ _OUTPUT_FACES = 40_000
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Result(GivenBack):
-    """What a fit returns: the surface, a mesh on it with normals, and the report of all steps as plain data."""
+    """What a fit returns: the surface, a mesh on it with normals, and the report of all steps as plain data.
+
+    input: the mesh, oriented, all of whose vertices are in faces; its triangles are `surface.refinement.coarse`.
+    """
 
     surface: OrbifoldSurface
     output: Polyhedron
     report: dict[str, Any]
+    input: Polyhedron
 
 
 def fit(
@@ -80,7 +84,8 @@ def _fitted(mesh: object, config: Config, stages: Stages, share: float) -> Resul
     polyhedron = mesh if isinstance(mesh, Polyhedron) else stages("read", mesh_of, mesh, config, registry)
     surface_type = stages("topology", require_closed_surface, polyhedron)
     require_density(config.output.refine, int((polyhedron.face_sizes - 2).sum()), config.places)
-    unit, origin, scale = _normalised(oriented(without_unused_vertices(polyhedron)))
+    placed = oriented(without_unused_vertices(polyhedron))
+    unit, origin, scale = _normalised(placed)
     triangles = stages("triangles", triangulated, unit)
     mapping = Mapping(unit, triangles, surface_type, config, stages)
     found = Approximations(mapping, config, stages).wanted()
@@ -89,7 +94,7 @@ def _fitted(mesh: object, config: Config, stages: Stages, share: float) -> Resul
     require_told_by_ends(output, surface_type)
     inspection = stages("inspection", inspected, surface, output, config.output.refine is None)
     summary = report(surface, surface_type, unit, config, found, output, inspection, stages.seconds)
-    return Result(surface, output, summary)
+    return Result(surface, output, summary, placed)
 
 
 def _tessellated(surface: OrbifoldSurface, refine: int | None, wanted: float) -> Polyhedron:

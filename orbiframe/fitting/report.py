@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import platform
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
@@ -9,10 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.fitting.accuracy import Accuracy
+from orbiframe.fitting.accuracy import APART, PLACES, Accuracy
 from orbiframe.fitting.approximation import Approximation
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.inspection import Inspection
+from orbiframe.functions.basis import DifferentiableBasis
 from orbiframe.meshes.face_diagonals import RULE
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
@@ -81,6 +83,7 @@ def report(
             "girth": girth_radius(found.mapped.triangulation),
             "spacing": float(np.sqrt(area_in_space / surface.basis.size)),
         },
+        "curvature": _curvature_report(surface),
         "creases": None if quality is None else quality._asdict() | {"angle_from": config.data.creases},
         "notes": [*found.notes, *inspection.notes(output), *(() if quality is None else quality.notes())],
         "output": {
@@ -110,10 +113,33 @@ def _distances_report(accuracy: Accuracy, surface: OrbifoldSurface) -> dict[str,
             "rms": part.rms,
             "mean": part.mean,
             "max": part.max,
-            "place": [float(x) for x in surface.origin + surface.scale * np.array(part.place)],
+            "place": _in_space(surface, part.place),
         }
         for name, part in named.items()
-    } | {"normals": accuracy.normals}
+    } | {
+        "hausdorff": max(accuracy.to_surface.max, accuracy.to_mesh.max),
+        "normals": accuracy.normals,
+        "worst": _worst(accuracy, surface),
+    }
+
+
+def _worst(accuracy: Accuracy, surface: OrbifoldSurface) -> list[dict[str, Any]]:
+    """Where mesh and surface are farthest from each other, the worst place first."""
+    both = {"mesh": accuracy.to_surface.places, "surface": accuracy.to_mesh.places}
+    found = [
+        {"on": name, "distance": each.distance, "place": _in_space(surface, each.place)}
+        for name, places in both.items()
+        for each in places
+    ]
+    told: list[dict[str, Any]] = []
+    for each in sorted(found, key=lambda each: -each["distance"]):
+        if all(math.dist(each["place"], other["place"]) > APART * surface.scale for other in told):
+            told.append(each)
+    return told[:PLACES]
+
+
+def _in_space(surface: OrbifoldSurface, place: tuple[float, float, float]) -> list[float]:
+    return [float(x) for x in surface.origin + surface.scale * np.array(place)]
 
 
 def _cut_report(polyhedron: Polyhedron, triangles: Polyhedron) -> dict[str, Any]:
@@ -138,6 +164,21 @@ def _map_report(triangulation: Triangulation) -> dict[str, Any]:
         "angle_distortion": {"median": median, "p95": p95, "max": float(triangulation.angle_distortion.max())},
         "weights": triangulation.weights,
     }
+
+
+def _curvature_report(surface: OrbifoldSurface) -> dict[str, Any] | None:
+    """The curvatures at the vertices of the refined mesh, in units of the file; None without derivatives."""
+    if not isinstance(surface.basis, DifferentiableBasis):
+        return None
+    with np.errstate(all="ignore"):
+        found = surface.curvature(surface.vertex_points)
+        bent = np.abs(found.mean) + np.sqrt(np.maximum(found.mean**2 - found.gaussian, 0.0))
+        radius = float(1 / bent.max())
+    levels = {"min": 0.0, "p05": 0.05, "median": 0.5, "p95": 0.95, "max": 1.0}
+    return {
+        name: dict(zip(levels, _weighted_quantiles(values, found.element, list(levels.values())), strict=True))
+        for name, values in (("gaussian", found.gaussian), ("mean", np.abs(found.mean)))
+    } | {"radius": radius}
 
 
 def _crowding_report(triangulation: Triangulation) -> dict[str, float]:

@@ -105,6 +105,11 @@ class OrbifoldSurface:
         triangles, places = require_places(face, barycentric, self.refinement.coarse.face_count)
         return self.triangulation.locate(*self.refinement.locate(triangles, places))
 
+    @property
+    def vertex_points(self) -> Points:
+        """The points of X/H of the vertices of the refined mesh."""
+        return Points(self.triangulation.patch, self.triangulation.points)
+
     def evaluate(self, points: Points) -> Floats:
         """The surface points (n, 3) over points of X/H."""
         return np.asarray(self.origin + self.scale * self.basis.values(points, self.coefficients))
