@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from orbiframe.fitting.pipeline import Result
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.surfaces.colour_scale import ColourScale
-from orbiframe.surfaces.edge_curves import edge_curves
+from orbiframe.surfaces.curved_edges import edge_curves
 from orbiframe.surfaces.shaded_mesh import VIEW, shaded_picture
-from orbiframe.surfaces.shown_values import ShownValues, shown_values
 from orbiframe.surfaces.surface import Tessellation
+from orbiframe.surfaces.values_to_show import ShownValues, shown_values
 from orbiframe.triangulations.tessellation import Tessellation as Tiling
 
 Floats = NDArray[np.float64]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.fitting.accuracy import APART, PLACES, Accuracy
+from orbiframe.fitting.accuracy import APART, PLACES, Accuracy, Place
 from orbiframe.fitting.approximation import Approximation
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.inspection import Inspection
@@ -126,16 +126,14 @@ def _distances_report(accuracy: Accuracy, surface: OrbifoldSurface) -> dict[str,
 def _worst(accuracy: Accuracy, surface: OrbifoldSurface) -> list[dict[str, Any]]:
     """Where mesh and surface are farthest from each other, the worst place first."""
     both = {"mesh": accuracy.to_surface.places, "surface": accuracy.to_mesh.places}
-    found = [
-        {"on": name, "distance": each.distance, "place": _in_space(surface, each.place)}
-        for name, places in both.items()
-        for each in places
+    found = [(each, name) for name, places in both.items() for each in places]
+    told: list[tuple[Place, str]] = []
+    for each, name in sorted(found, key=lambda pair: -pair[0].distance):
+        if all(math.dist(each.place, other.place) > APART for other, _ in told):
+            told.append((each, name))
+    return [
+        {"on": name, "distance": each.distance, "place": _in_space(surface, each.place)} for each, name in told[:PLACES]
     ]
-    told: list[dict[str, Any]] = []
-    for each in sorted(found, key=lambda each: -each["distance"]):
-        if all(math.dist(each["place"], other["place"]) > APART * surface.scale for other in told):
-            told.append(each)
-    return told[:PLACES]
 
 
 def _in_space(surface: OrbifoldSurface, place: tuple[float, float, float]) -> list[float]:

@@ -1,12 +1,12 @@
 """The public names of orbiframe.surfaces, each with the module it lives in."""
 
+from .curved_edges import edge_curves as edge_curves
 from .curved_triangles import (
     CurvedMesh as CurvedMesh,
     curved_mesh as curved_mesh,
     joined_meshes as joined_meshes,
     node_exponents as node_exponents,
 )
-from .edge_curves import edge_curves as edge_curves
 from .equations import heat as heat, poisson as poisson
 from .exact_patches import patches_of as patches_of
 from .field import Field as Field, fit_field as fit_field
@@ -20,7 +20,7 @@ from .principal import (
 )
 from .quadrilateral_patches import QuadrilateralPatches as QuadrilateralPatches
 from .shaded_mesh import ShadedPicture as ShadedPicture, shaded_picture as shaded_picture
-from .shown_values import ShownValues as ShownValues, shown_values as shown_values
 from .surface import Curvature as Curvature, OrbifoldSurface as OrbifoldSurface, Tessellation as Tessellation
 from .surface_forms import SurfaceForms as SurfaceForms
 from .triangle_patches import TrianglePatches as TrianglePatches
+from .values_to_show import ShownValues as ShownValues, shown_values as shown_values
