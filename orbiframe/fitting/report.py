@@ -75,7 +75,7 @@ def report(
             "rms": rms,
             "max": largest,
         },
-        "distance": _distances_report(found.accuracy, surface),
+        "distance": _distances_report(found.accuracy, surface, inspection.away),
         "shape": {
             "folded_share": inspection.folded,
             "self_intersections": {"mesh": len(inspection.in_mesh), "output": len(inspection.in_output)},
@@ -101,8 +101,11 @@ def _faces_report(now: FaceShapes, before: FaceShapes | None) -> dict[str, Any]:
     return {**now.summary(), "before": None if before is None else before.summary()}
 
 
-def _distances_report(accuracy: Accuracy, surface: OrbifoldSurface) -> dict[str, Any]:
-    """Distances in diagonals, with the places in the coordinates of the mesh where they are largest."""
+def _distances_report(accuracy: Accuracy, surface: OrbifoldSurface, of_output: float) -> dict[str, Any]:
+    """Distances in diagonals, with the places in the coordinates of the mesh where they are largest.
+
+    of_output: the largest distance of a vertex of the output to the mesh.
+    """
     named = {
         "mesh_to_surface": accuracy.to_surface,
         "surface_to_mesh": accuracy.to_mesh,
@@ -117,7 +120,7 @@ def _distances_report(accuracy: Accuracy, surface: OrbifoldSurface) -> dict[str,
         }
         for name, part in named.items()
     } | {
-        "hausdorff": max(accuracy.to_surface.max, accuracy.to_mesh.max),
+        "hausdorff": max(accuracy.to_surface.max, accuracy.to_mesh.max, of_output),
         "normals": accuracy.normals,
         "worst": _worst(accuracy, surface),
     }
