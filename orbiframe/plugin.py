@@ -65,6 +65,11 @@ def orbiframe_stage_done(stage: str, result: object, seconds: float) -> None:
 
 
 @hookspec
+def orbiframe_show(surface: object) -> object:
+    """An object that notebooks show as a page with a surface; that of the plugin registered last is taken."""
+
+
+@hookspec
 def orbiframe_warm_up() -> Iterable[str]:  # type: ignore[empty-body]
     """Commands that together use all compiled code of a plugin, each as it follows `orbiframe`; for `warm-up`.
 

@@ -1,0 +1,32 @@
+"""Viewer: surfaces in a page of the browser, and in notebooks."""
+
+from __future__ import annotations
+
+from orbiframe.plugin import Component, hookimpl
+
+
+@hookimpl
+def orbiframe_components() -> list[Component]:
+    """The command that shows a surface."""
+    return [
+        Component(
+            "command",
+            "view",
+            "orbiframe_viewer.view_command:configure",
+            "look at a mesh, a saved surface or a field in the browser",
+        ),
+    ]
+
+
+@hookimpl
+def orbiframe_show(surface: object) -> object:
+    """A page with the surface, for notebooks."""
+    from orbiframe_viewer.notebook import shown
+
+    return shown(surface)
+
+
+@hookimpl
+def orbiframe_warm_up() -> list[str]:
+    """The page of a surface."""
+    return ["view double_torus.off -o out.html"]
