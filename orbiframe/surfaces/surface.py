@@ -180,6 +180,12 @@ class OrbifoldSurface:
             made.save(path)
         return made
 
+    def show(self) -> Any:
+        """The surface to be turned in a notebook: Jupyter, marimo or VS Code; a picture where no JavaScript runs."""
+        from orbiframe.components.registry import Registry
+
+        return Registry.discover().shown(self)
+
     def fit_field(
         self, points: Points | ArrayLike, values: ArrayLike, *, fitter: Fitter | None = None, basis: Basis | None = None
     ) -> Field:

@@ -1,4 +1,4 @@
-"""Scene: what a page shows of a surface, as plain data: numbers in base64, everything about the origin, of unit size."""
+"""Scene: what a page shows of a surface, as plain data: numbers in base64, about the origin, of unit size."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Scene = dict[str, Any]
 FACES = 40_000
 _STEPS = 8  # pieces of an edge
 _MOST_EDGES = 20_000
-_MOST_FAR = 5000  # edges of the copies of X/H round the one in the middle
+_MOST_FAR = 10_000  # edges of the copies of X/H round the one in the middle
 
 
 def surface_scene(surface: OrbifoldSurface, polyhedron: Polyhedron | None, name: str, *, faces: int = FACES) -> Scene:

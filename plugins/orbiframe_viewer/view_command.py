@@ -15,7 +15,12 @@ _LAST_WORD = 3.0  # seconds that a page has to hear of an error
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add("file", metavar="FILE", type=Path, help="a closed mesh, a surface of `fit --save` (.npz), or a field (.ply, .vtu)")
+    add(
+        "file",
+        metavar="FILE",
+        type=Path,
+        help="a closed mesh, a saved surface (.npz), or a field (.ply, .vtu)",
+    )
     add("-o", "--output", metavar="FILE.html", type=Path, help="write the page with its data, and serve nothing")
     add("--config", metavar="FILE.toml", type=Path, help="components and options of the fit of a mesh")
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=200")
