@@ -65,8 +65,11 @@ def orbiframe_stage_done(stage: str, result: object, seconds: float) -> None:
 
 
 @hookspec
-def orbiframe_show(surface: object) -> object:
-    """An object that notebooks show as a page with a surface; that of the plugin registered last is taken."""
+def orbiframe_show() -> str:  # type: ignore[empty-body]
+    """The target "package.module:object" that makes of a surface an object which notebooks show as a page.
+
+    Called as `shown(surface)` by `surface.show()`; of several plugins the one registered last is asked.
+    """
 
 
 @hookspec

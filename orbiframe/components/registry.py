@@ -198,10 +198,10 @@ class Registry:
 
     def shown(self, surface: object) -> object:
         """What notebooks show of a surface (hook `orbiframe_show`). Raises PluginError where no plugin shows any."""
-        found = call_each(self._manager, "orbiframe_show", surface=surface)
+        found = call_each(self._manager, "orbiframe_show")
         if not found:
             raise PluginError("no plugin shows surfaces; `surface.picture()` is a picture of it")
-        return found[0]
+        return resolve(Component("show", "show", str(found[0]), ""), "the hook orbiframe_show")(surface)
 
     # ---- filling --------------------------------------------------------------------------------------------------
 

@@ -44,8 +44,3 @@ class Shown:
 
         write_text(Path(path), self._page)
 
-
-def shown(surface: object) -> Shown:
-    """A surface for a notebook."""
-    assert isinstance(surface, OrbifoldSurface)
-    return Shown(surface)

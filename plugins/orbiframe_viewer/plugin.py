@@ -19,11 +19,9 @@ def orbiframe_components() -> list[Component]:
 
 
 @hookimpl
-def orbiframe_show(surface: object) -> object:
-    """A page with the surface, for notebooks."""
-    from orbiframe_viewer.notebook import shown
-
-    return shown(surface)
+def orbiframe_show() -> str:
+    """A page with a surface, for notebooks."""
+    return "orbiframe_viewer.notebook:Shown"
 
 
 @hookimpl

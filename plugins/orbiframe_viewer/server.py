@@ -67,25 +67,30 @@ class Session:
 
 def serve(session: Session, port: int = 0) -> ThreadingHTTPServer:
     """Begin to serve a session, in threads beside; port 0: one that is free. Raises OSError for one that is not."""
-    handler = type("Handler", (_Handler,), {"session": session})
-    server = ThreadingHTTPServer((HOST, port), handler)
+
+    class Own(_Handler):
+        """The requests of this session."""
+
+    server = ThreadingHTTPServer((HOST, port), Own)
+    Own.session, Own.port = session, server.server_port
     threading.Thread(target=server.serve_forever, daemon=True).start()
     return server
 
 
 def address(server: ThreadingHTTPServer, session: Session) -> str:
     """The address of the page."""
-    return f"http://{HOST}:{server.server_address[1]}/{session.token}/"
+    return f"http://{HOST}:{server.server_port}/{session.token}/"
 
 
 class _Handler(BaseHTTPRequestHandler):
     session: Session
+    port: int
     server_version, sys_version = "orbiframe", ""
 
     def do_GET(self) -> None:
         """A file of the page, the state or the scenes."""
         _, token, *rest = self.path.partition("?")[0].split("/")
-        port = self.server.server_address[1]
+        port = self.port
         # A page of another name that leads here, by a name server that lies, knows no token, and is told nothing.
         if self.headers.get("Host") not in (f"{HOST}:{port}", f"localhost:{port}"):
             self._send(403, b"this address is served to 127.0.0.1 alone\n", "html")

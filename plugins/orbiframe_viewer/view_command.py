@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 
 from orbiframe import FormatError, Registry, UsageError
-from orbiframe.files import require_apart, require_output
+from orbiframe.files import located, require_apart, require_output
 
 _LAST_WORD = 3.0  # seconds that a page has to hear of an error
 
@@ -33,6 +33,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     """Serve the page until the command is interrupted, or write it."""
     from orbiframe import Config
 
+    args.file = located(args.file)
     if not args.file.exists():
         raise FormatError(f"{args.file}: there is no such file; name a mesh, a saved surface or a field")
     config = Config.load(args.config, args.set, registry)
