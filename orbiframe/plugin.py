@@ -40,7 +40,8 @@ class Component:
     kind: one of `KINDS`; name: as written in a configuration ("least-squares"); target: "package.module:object";
     summary: one line, shown by `orbiframe plugins`; extra: the pip requirement that supplies an optional dependency;
     suffixes: file suffixes with their dot, lower case (kinds that read or make files only); welds: whether every face
-    has corners of its own in the file, of which the reader joins the equal ones; meanings: what each option means, by
+    has corners of its own in the file, of which the reader joins the equal ones; textures: whether a writer keeps the
+    texture coordinates of corners; meanings: what each option means, by
     its name, for the reference, the schema and the commented default of configurations.
     """
 
@@ -51,6 +52,7 @@ class Component:
     extra: str | None = None
     suffixes: tuple[str, ...] = ()
     welds: bool = False
+    textures: bool = False
     meanings: Mapping[str, str] = field(default_factory=dict, hash=False)
 
 

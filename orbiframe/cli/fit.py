@@ -14,7 +14,7 @@ from orbiframe.cli.report import json_text, summary, warnings_of, write_report
 from orbiframe.cli.speech import say
 from orbiframe.components.registry import Registry
 from orbiframe.errors import UsageError
-from orbiframe.files.destination import require_destination
+from orbiframe.files.destination import require_destination, require_textures
 from orbiframe.files.folder import require_folder
 from orbiframe.files.outputs import require_apart, require_output
 
@@ -59,6 +59,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--tolerance", metavar="T", type=float, help="largest rms error, of the box's diagonal (output.tolerance)")
     add("--max-error", metavar="T", type=float, help="largest error anywhere, of the box's diagonal (output.max_error)")
     add("--refine", metavar="K", type=int, help="K*K output triangles for each input triangle (output.refine)")
+    add("--uv", action="store_true", help="texture coordinates, to .obj, .gltf or .glb (output.uv)")
     add("--faces", metavar="N", type=int, help="to CAD: about so many B-spline faces; default as the topology suggests")
     add("--export-tolerance", metavar="T", type=float, help="of these faces, of the box's diagonal; default 1e-4")
     add("--conforming", action="store_true", help="to G+Smo (.xml): neighbouring patches have the same knots")
@@ -198,6 +199,7 @@ def overrides(args: argparse.Namespace) -> list[str]:
         "data.means": args.data,
         "data.creases": args.creases,
         "output.refine": args.refine,
+        "output.uv": "true" if args.uv else None,
     }
     fast = ["fitter.name=least-squares", "data.lift=false"] if args.fast else []
     return [*fast, *args.set, *(f"{key}={value}" for key, value in named.items() if value is not None)]
@@ -217,11 +219,20 @@ def _kind(args: argparse.Namespace, config: Config, registry: Registry) -> str:
     return "elements"
 
 
+def _require_textures(args: argparse.Namespace, kind: str, registry: Registry) -> None:
+    if kind != "writer":
+        raise UsageError(f"{args.output}: texture coordinates belong to meshes of flat faces, such as surface.obj")
+    require_textures(args.output, registry, args.format)
+
+
 def _require_destinations(args: argparse.Namespace, config: Config, registry: Registry) -> None:
     outputs = {"-o": args.output, "--report": args.report, "--save": args.save}
     plugins = {f"the plugin {path}": path for path in config.plugins}
     require_apart(outputs, {"the input": args.mesh, "--config": args.config, **plugins})
-    require_destination(args.output, registry, args.format, kind=_kind(args, config, registry))
+    kind = _kind(args, config, registry)
+    require_destination(args.output, registry, args.format, kind=kind)
+    if config.output.uv:
+        _require_textures(args, kind, registry)
     if args.report is not None and _is_page(args.report):
         require_folder(args.report)
     elif args.report is not None:

@@ -11,29 +11,13 @@ from typing import Any, TextIO
 
 from orbiframe.cli.shares import FitShare, in_words
 from orbiframe.cli.speech import say, say_event
-from orbiframe.cli.status_line import StatusLine
+from orbiframe.cli.status_line import status_line
 from orbiframe.compiled import compilation
 
 # Seconds after which something is said again.
 _PATIENCE, _TICK = 1.5, 1.0
 _BAR = 20
 MODES = ("auto", "json", "none")
-
-
-# By the identity of the stream, which the line keeps alive.
-_lines: dict[int, StatusLine] = {}
-
-
-def status_line(stream: TextIO | None) -> StatusLine | None:
-    """The status line of a stream, the same for all who write there; None where it is no terminal or notebook."""
-    if stream is None or not (stream.isatty() or _in_notebook(stream)):
-        return None
-    return _lines.setdefault(id(stream), StatusLine(stream))
-
-
-def _in_notebook(stream: TextIO) -> bool:
-    """Whether a stream is shown under a cell of Jupyter, where a line can be written over as on a terminal."""
-    return type(stream).__module__.startswith("ipykernel.")
 
 
 class Progress:
@@ -99,7 +83,7 @@ class Progress:
     def clear(self) -> None:
         """Make room for a line of another kind."""
         if self._line:
-            self._line.show("")
+            self._line.wipe()
 
     def close(self) -> None:
         """Nothing goes on any more."""
@@ -107,7 +91,7 @@ class Progress:
             self._ticker.stop()
             self._ticker = None
         if self._line and self._work:
-            self._line.show("")
+            self._line.wipe()
         self._work, self._stage, self._command = None, "", ""
 
     def _say_work(self) -> None:

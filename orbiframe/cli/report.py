@@ -72,6 +72,7 @@ def _lines(report: Mapping[str, Any], written: str | None) -> Iterator[tuple[str
     yield "error", f"rms {fit['rms']:.2e}, max {fit['max']:.2e} of the bounding-box diagonal"
     yield from _distances(report["distance"])
     yield from _creases(report.get("creases"))
+    yield from _texture(report.get("uv"))
     yield from (("warning", note) for note in report["notes"])
     yield from _ending(report, written)
 
@@ -105,6 +106,18 @@ def _creases(creases: Mapping[str, Any] | None) -> Iterator[tuple[str, str]]:
             "creases",
             f"{curves} of {creases['angle_from']:g}° or more, {corners}, {ends}; within {creases['distance']:.1e}, "
             f"angles off by {creases['angle']:.2g}°, kinks beside them {kink:.2g}° (max {worst:.2g}°)",
+        )
+
+
+def _texture(uv: Mapping[str, Any] | None) -> Iterator[tuple[str, str]]:
+    """How texture coordinates distort the mesh, if it has some."""
+    if uv is not None:
+        angle, area = uv["angle_distortion"], uv["area_distortion"]
+        folds = f", {_counted(uv['folded'], 'fold', 'folds')}" if uv["folded"] else ""
+        yield (
+            "uv",
+            f"cut open along {_counted(uv['cut'], 'edge', 'edges')}; angle distortion median {angle['median']:.2f}, "
+            f"p95 {angle['p95']:.2f}, areas {area['p5']:.2g} to {area['p95']:.2g} of the mean (p5, p95){folds}",
         )
 
 

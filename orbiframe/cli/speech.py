@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import TextIO
 
+from orbiframe.cli.status_line import status_line
 from orbiframe.components.shown_text import shown
 
 _for_programs = False
@@ -43,6 +44,8 @@ def said_to_programs(wanted: bool) -> Iterator[None]:
 def _write(line: str) -> None:
     if sys.stderr is not None:
         with suppress(OSError, ValueError), _writing:
+            if below := status_line(sys.stderr):
+                below.wipe()
             print(line, file=sys.stderr, flush=True)
 
 

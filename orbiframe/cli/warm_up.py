@@ -14,8 +14,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from orbiframe.cli.progress import status_line
 from orbiframe.cli.speech import say
+from orbiframe.cli.status_line import status_line
 from orbiframe.compiled import compilation
 from orbiframe.components.registry import Registry
 from orbiframe.errors import OrbiframeError

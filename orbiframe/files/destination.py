@@ -21,6 +21,15 @@ def require_destination(path: Path, registry: Registry, format: str | None = Non
         registry.load(kind, name)  # a missing library is found before the fit, not after it
 
 
+def require_textures(path: Path, registry: Registry, format: str | None = None) -> None:
+    """Raise UsageError unless the writer of the file keeps texture coordinates."""
+    from orbiframe.files.gate import keeps_textures
+
+    if not keeps_textures(path, registry, format):
+        known = sorted({s for c in registry.components("writer") if c.textures for s in c.suffixes})
+        raise UsageError(f"{path}: this format holds no texture coordinates; write {', '.join(known)}")
+
+
 def require_picture(path: Path, name: str, registry: Registry) -> None:
     """Raise UsageError unless the picture can have the suffix of the file, FormatError where the place is unfit.
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -85,7 +87,11 @@ def write(
     path = Path(path)
     mesh = require_sound(_mesh(polyhedron, path), path)
     require_output(path)
-    _write_whole(path, _component(path, _registry(registry), "writer", format, options), mesh)
+    known = _registry(registry)
+    if mesh.corner_uv is not None and not keeps_textures(path, known, format):
+        warnings.warn(f"{path}: this format holds no texture coordinates; left out", stacklevel=2)
+        mesh = replace(mesh, corner_uv=None)
+    _write_whole(path, _component(path, known, "writer", format, options), mesh)
 
 
 def export(
@@ -114,6 +120,11 @@ def write_elements(path: Path, mesh: CurvedMesh, registry: Components, *, format
 def exports(path: Path, registry: Components) -> bool:
     """Whether an exporter writes files with this suffix."""
     return any(path.suffix.lower() in c.suffixes for c in registry.components("exporter"))
+
+
+def keeps_textures(path: Path, registry: Components, format: str | None = None) -> bool:
+    """Whether the writer of a file keeps the texture coordinates of corners."""
+    return registry.component("writer", component_name(path, registry, "writer", format)).textures
 
 
 def _mesh(given: object, path: Path) -> Polyhedron:

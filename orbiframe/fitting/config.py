@@ -39,12 +39,13 @@ class Output:
 
     refine: every triangle of the mesh becomes refine^2 triangles, None for as many as a fine picture needs; tolerance
     and max_error: the largest root mean square and the largest distance allowed, relative to the diagonal of the
-    bounding box, None for a fixed size.
+    bounding box, None for a fixed size; uv: whether the mesh gets texture coordinates.
     """
 
     refine: Annotated[int, Ge(1)] | None = None
     tolerance: Annotated[float, Gt(0)] | None = None
     max_error: Annotated[float, Gt(0)] | None = None
+    uv: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

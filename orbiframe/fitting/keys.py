@@ -57,6 +57,8 @@ _RESULT_MEANINGS = {
     "output.tolerance": "largest root mean square error, relative to the diagonal of the bounding box; if given, "
     "functions are added where the error is, from 500 up to 16 000 in all, until it is "
     "reached",
+    "output.uv": "the mesh gets texture coordinates: X/H is cut open and laid into the unit square, for .obj, .gltf "
+    "and .glb",
     "output.max_error": "largest error anywhere, likewise; both may be given",
 }
 PLUGINS_MEANING = "Python files with components, relative to this file"

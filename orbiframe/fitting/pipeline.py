@@ -14,7 +14,7 @@ from orbiframe.components.registry import Registry
 from orbiframe.errors import TopologyError
 from orbiframe.files import gate
 from orbiframe.fitting.approximation import Approximations
-from orbiframe.fitting.config import Config
+from orbiframe.fitting.config import Config, Output
 from orbiframe.fitting.given_back import GivenBack
 from orbiframe.fitting.inspection import inspected
 from orbiframe.fitting.kept_maps import KeptMaps
@@ -32,6 +32,7 @@ from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.surface_type import without_unused_vertices
 from orbiframe.meshes.told_by_ends import require_told_by_ends
 from orbiframe.surfaces.surface import OrbifoldSurface
+from orbiframe.surfaces.texture_coordinates import texture_coordinates
 
 _OUTPUT_FACES = 40_000
 
@@ -90,19 +91,19 @@ def _fitted(mesh: object, config: Config, stages: Stages, share: float) -> Resul
     mapping = Mapping(unit, triangles, surface_type, config, stages)
     found = Approximations(mapping, config, stages).wanted()
     surface = replace(found.surface, origin=origin, scale=scale)
-    output = stages("tessellation", _tessellated, surface, config.output.refine, share * _OUTPUT_FACES)
+    output = stages("tessellation", _tessellated, surface, config.output, share * _OUTPUT_FACES)
     require_told_by_ends(output, surface_type)
     inspection = stages("inspection", inspected, surface, output, config.output.refine is None)
     summary = report(surface, surface_type, unit, config, found, output, inspection, stages.seconds)
     return Result(surface, output, summary, placed)
 
 
-def _tessellated(surface: OrbifoldSurface, refine: int | None, wanted: float) -> Polyhedron:
+def _tessellated(surface: OrbifoldSurface, output: Output, wanted: float) -> Polyhedron:
     """Every triangle of the input cut alike, or the refined mesh cut so that it has about as many faces as wanted."""
-    if refine is not None:
-        return surface.tessellate(refine)
-    faces = surface.triangulation.polyhedron.face_count
-    return surface.tessellate(max(1, round(math.sqrt(wanted / faces))), bisected=True)
+    faces, bisected = surface.triangulation.polyhedron.face_count, output.refine is None
+    density = max(1, round(math.sqrt(wanted / faces))) if output.refine is None else output.refine
+    mesh = surface.tessellate(density, bisected=bisected)
+    return replace(mesh, corner_uv=texture_coordinates(surface, density, bisected=bisected)) if output.uv else mesh
 
 
 def registry_for(config: Config) -> Registry:

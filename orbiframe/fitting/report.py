@@ -21,6 +21,7 @@ from orbiframe.meshes.sizes import vector_areas
 from orbiframe.meshes.surface_type import SurfaceType
 from orbiframe.surfaces.crease_quality import crease_quality
 from orbiframe.surfaces.surface import OrbifoldSurface
+from orbiframe.surfaces.texture_coordinates import texture_distortion
 from orbiframe.triangulations.face_shapes import FaceShapes
 from orbiframe.triangulations.local_girth import girth_radius
 from orbiframe.triangulations.lost_digits import crowding_of
@@ -84,6 +85,7 @@ def report(
             "spacing": float(np.sqrt(area_in_space / surface.basis.size)),
         },
         "curvature": _curvature_report(surface),
+        "uv": _texture_report(output),
         "creases": None if quality is None else quality._asdict() | {"angle_from": config.data.creases},
         "notes": [*found.notes, *inspection.notes(output), *(() if quality is None else quality.notes())],
         "output": {
@@ -180,6 +182,21 @@ def _curvature_report(surface: OrbifoldSurface) -> dict[str, Any] | None:
         name: dict(zip(levels, _weighted_quantiles(values, found.element, list(levels.values())), strict=True))
         for name, values in (("gaussian", found.gaussian), ("mean", np.abs(found.mean)))
     } | {"radius": radius}
+
+
+def _texture_report(output: Polyhedron) -> dict[str, Any] | None:
+    """How texture coordinates distort the mesh, weighted by area in space; None without any."""
+    if output.corner_uv is None:
+        return None
+    found, weights = texture_distortion(output), np.linalg.norm(vector_areas(output), axis=1)
+    median, p95 = _weighted_quantiles(found.angle, weights, [0.5, 0.95])
+    least, most = _weighted_quantiles(found.area, weights, [0.05, 0.95])
+    return {
+        "cut": found.cut,
+        "folded": found.folded,
+        "angle_distortion": {"median": median, "p95": p95, "max": float(found.angle.max())},
+        "area_distortion": {"p5": least, "p95": most},
+    }
 
 
 def _crowding_report(triangulation: Triangulation) -> dict[str, float]:

@@ -38,7 +38,7 @@ class Polyhedron:
     (H,); twin is -1 where an edge lies in one face only, or in three or more. Optional, as far as a file has them:
     normals (V, 3), colors (V, 3 or 4) and face_colors (F, 3 or 4), colours from 0 to 1; unit, that of the coordinates:
     "millimetre" or "metre"; corner_normals (H, 3), of every corner of every face, where they are not those of the
-    vertices: beside creases.
+    vertices: beside creases; corner_uv (H, 2), texture coordinates of every corner of every face.
     """
 
     vertices: Floats
@@ -51,6 +51,7 @@ class Polyhedron:
     face_colors: Floats | None = None
     unit: str | None = None
     corner_normals: Floats | None = None
+    corner_uv: Floats | None = None
 
     @classmethod
     def from_corners(
@@ -174,7 +175,7 @@ class Polyhedron:
         return self.tail[self.offsets[face] : self.offsets[face + 1]]
 
     def with_vertices(self, vertices: Floats, normals: Floats | None = None) -> Polyhedron:
-        """The same faces with other vertices (and normals); colours are kept, normals of corners are not."""
+        """The same faces with other vertices (and normals); all but the normals of corners is kept."""
         return replace(self, vertices=np.asarray(vertices, dtype=np.float64), normals=normals, corner_normals=None)
 
     def to_trimesh(self) -> Any:

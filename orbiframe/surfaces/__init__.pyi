@@ -22,5 +22,10 @@ from .quadrilateral_patches import QuadrilateralPatches as QuadrilateralPatches
 from .shaded_mesh import ShadedPicture as ShadedPicture, shaded_picture as shaded_picture
 from .surface import Curvature as Curvature, OrbifoldSurface as OrbifoldSurface, Tessellation as Tessellation
 from .surface_forms import SurfaceForms as SurfaceForms
+from .texture_coordinates import (
+    TextureDistortion as TextureDistortion,
+    texture_coordinates as texture_coordinates,
+    texture_distortion as texture_distortion,
+)
 from .triangle_patches import TrianglePatches as TrianglePatches
 from .values_to_show import ShownValues as ShownValues, shown_values as shown_values

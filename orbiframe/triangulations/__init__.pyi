@@ -6,3 +6,4 @@ from .lost_digits import crowding_of as crowding_of
 from .point_location import Location as Location, Locator as Locator
 from .tessellation import FaceCopies as FaceCopies, LiftedFaces as LiftedFaces, Tessellation as Tessellation
 from .triangulation import Triangulation as Triangulation
+from .unrolled import Unrolled as Unrolled, unrolled as unrolled

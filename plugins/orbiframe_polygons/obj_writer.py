@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -13,12 +14,13 @@ from orbiframe_polygons.lines import columns_of, faces_text, save, table_text
 from orbiframe_polygons.loss import tell_loss
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
 
 
 def write(path: Path, polyhedron: Polyhedron) -> None:
     """Write polygons, normals and vertex colours (`v x y z r g b`), each number with the digits that round-trip.
 
-    Beside creases the corners of faces have normals of their own.
+    Corners have normals of their own beside creases, and points of a texture (`vt u v`) where the polyhedron has some.
 
     OBJ holds no opacity and no colours of faces: a warning says what was left out.
     """
@@ -26,8 +28,8 @@ def write(path: Path, polyhedron: Polyhedron) -> None:
     tell_loss(path, "colours of faces", polyhedron.face_colors is not None)
     tell_loss(path, "opacity", colors is not None and colors.shape[1] > 3)
     solid = None if colors is None else colors[:, :3]
-    if polyhedron.corner_normals is not None:
-        _write_corners(path, polyhedron, polyhedron.corner_normals, solid)
+    if polyhedron.corner_normals is not None or polyhedron.corner_uv is not None:
+        _write_corners(path, polyhedron, solid)
         return
     normals = polyhedron.normals
     vertices = table_text(columns_of(polyhedron.vertices, solid), start="v ")
@@ -35,16 +37,33 @@ def write(path: Path, polyhedron: Polyhedron) -> None:
     save(path, [], vertices, *directions, faces_text(polyhedron, lead="f", first=1, twice=normals is not None))
 
 
-def _write_corners(path: Path, polyhedron: Polyhedron, normals: Floats, colors: Floats | None) -> None:
-    """Polygons whose corners name a vertex and a normal each."""
-    different, number = np.unique(normals, axis=0, return_inverse=True)
-    words = [f"{v}//{n}" for v, n in zip((polyhedron.tail + 1).tolist(), (number.ravel() + 1).tolist(), strict=True)]
-    bounds = polyhedron.offsets.tolist()
-    faces = ("f " + " ".join(words[a:b]) + "\n" for a, b in itertools.pairwise(bounds))
+def _write_corners(path: Path, polyhedron: Polyhedron, colors: Floats | None) -> None:
+    """Polygons whose corners name a vertex, and a point of the texture and a normal of their own."""
+    textures, point = _numbered(polyhedron.corner_uv)
+    normals, normal = polyhedron.normals, polyhedron.tail
+    if polyhedron.corner_normals is not None:
+        normals, normal = _numbered(polyhedron.corner_normals)
+    columns = [polyhedron.tail, None if textures is None else point, None if normals is None else normal]
     save(
         path,
         [],
         table_text(columns_of(polyhedron.vertices, colors), start="v "),
-        table_text(columns_of(different), start="vn "),
-        (line.encode("ascii") for line in faces),
+        *([] if textures is None else [table_text(columns_of(textures), start="vt ")]),
+        *([] if normals is None else [table_text(columns_of(normals), start="vn ")]),
+        _faces(polyhedron.offsets.tolist(), columns),
     )
+
+
+def _numbered(table: Floats | None) -> tuple[Floats | None, Ints]:
+    """The different rows of a table, and the number of each row among them."""
+    if table is None:
+        return None, np.zeros(0, dtype=np.intp)
+    different, number = np.unique(table, axis=0, return_inverse=True)
+    return different, number.ravel()
+
+
+def _faces(bounds: list[int], columns: Sequence[Ints | None]) -> Iterator[bytes]:
+    """A line for each face, of corners as vertex/texture/normal."""
+    words = [itertools.repeat("") if column is None else map(str, (column + 1).tolist()) for column in columns]
+    corners = ["/".join(parts).rstrip("/") for parts in zip(*words, strict=False)]
+    return (f"f {' '.join(corners[a:b])}\n".encode("ascii") for a, b in itertools.pairwise(bounds))

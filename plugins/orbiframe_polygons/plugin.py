@@ -38,6 +38,7 @@ def orbiframe_components() -> list[Component]:
                 summary,
                 suffixes=suffixes,
                 welds=name == "stl",
+                textures=kind == "writer" and name in ("obj", "gltf"),
             )
             for name, (module, summary, suffixes) in FORMATS.items()
             for kind, verb in (("reader", "read"), ("writer", "write"))

@@ -17,8 +17,10 @@ th, td { padding: .25rem .6rem; border-bottom: 1px solid #ddd; text-align: left;
 th { cursor: pointer; position: sticky; top: 0; background: #f4f6f8 }
 th[data-way="1"]::after { content: " ▲" } th[data-way="-1"]::after { content: " ▼" }
 td.number { text-align: right } tr.failed td { background: #fff1f0 } .error { white-space: normal; max-width: 28rem }
-.scroll { overflow: auto; max-height: 34rem; border: 1px solid #ddd } svg { max-width: 100%; height: auto }
-input { font: inherit; padding: .25rem .5rem; width: 22rem; margin-bottom: .6rem }
+.about td + td { white-space: normal; overflow-wrap: anywhere }
+.scroll { overflow: auto; max-height: 34rem; border: 1px solid #ddd } .plot { overflow-x: auto }
+svg { max-width: 100%; min-width: 40rem; height: auto } img { max-width: 100% }
+input { font: inherit; padding: .25rem .5rem; width: 22rem; max-width: 95%; margin-bottom: .6rem }
 figure { display: inline-block; margin: .4rem; text-align: center } figcaption { font-size: 12px; max-width: 20rem }
 """
 _SCRIPT = """
@@ -48,10 +50,10 @@ def page(title: str, about: Sequence[tuple[str, str]], rows: Sequence[Row], sect
     """The page: what the study is, further sections of HTML, each with its title, and the table of all fits."""
     parts = [
         "<!doctype html>",
-        '<html lang="en"><head><meta charset="utf-8">',
+        '<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">',
         f"<title>{_safe(title)}</title><style>{_STYLE}</style></head><body>",
-        f"<h1>{_safe(title)}</h1><table>",
-        *(f"<tr><td>{_safe(name)}</td><td>{_safe(text)}</td></tr>" for name, text in about),
+        f"<h1>{_safe(title)}</h1><table class='about'>",
+        *(f"<tr><td>{_safe(name)}</td><td>{_safe(text)}</td></tr>" for name, text in about if text),
         "</table>",
         *(f"<h2>{_safe(name)}</h2>{content}" for name, content in sections),
         '<h2>Fits</h2><input id="filter" placeholder="words that a row must contain" aria-label="filter">',
@@ -59,6 +61,11 @@ def page(title: str, about: Sequence[tuple[str, str]], rows: Sequence[Row], sect
         f"<script>{_SCRIPT}</script></body></html>",
     ]
     return "\n".join(parts) + "\n"
+
+
+def plot(svg: str) -> str:
+    """A plot, as HTML; where the page is narrow it can be moved."""
+    return f'<div class="plot">{svg}</div>'
 
 
 def picture(png: bytes, caption: str) -> str:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -72,18 +73,31 @@ def _about(rows: list[Any], timings: list[Any]) -> Iterator[tuple[str, str]]:
 def _sections(
     results: Results, rows: list[Any], timings: list[Any], series: list[Any], measure: str
 ) -> Iterator[tuple[str, str]]:
-    from orbiframe_studies.page import picture
+    from orbiframe_studies.page import picture, plot
     from orbiframe_studies.plots import error_plot, surface_picture, time_plot
 
-    yield "Error against unknowns", error_plot(series, measure)
+    short = told_apart([each.name for each in series])
+    named = [replace(each, name=name) for each, name in zip(series, short, strict=True)]
+    yield "Error against unknowns", plot(error_plot(named, measure))
     slow = sorted(range(len(rows)), key=lambda i: -timings[i].get("total", 0.0))[:_MOST_BARS]
-    names = [f"{rows[i]['run']}: {title(rows[i])}" for i in sorted(slow)]
-    yield "Times", time_plot(names, [timings[i].get("seconds", {}) for i in sorted(slow)])
-    kept = [row for row in rows if results.folder.kept(row["key"], ".h5").exists()]
+    titles = told_apart([title(row) for row in rows])
+    names = [f"{rows[i]['run']}: {titles[i]}" for i in sorted(slow)]
+    yield "Times", plot(time_plot(names, [timings[i].get("seconds", {}) for i in sorted(slow)]))
+    has_arrays = [results.folder.kept(row["key"], ".h5").exists() for row in rows]
+    kept = [(row, name) for row, name, has in zip(rows, titles, has_arrays, strict=True) if has]
     if kept:
         chosen = kept[:: -(-len(kept) // _MOST_PICTURES)]
-        figures = (picture(surface_picture(results.arrays(row["key"])), title(row)) for row in chosen)
+        figures = (picture(surface_picture(results.arrays(row["key"])), name) for row, name in chosen)
         yield "Surfaces", "\n".join(figures)
+
+
+def told_apart(names: Sequence[str]) -> list[str]:
+    """The names without the parts at their beginning that all of them share; each keeps one part at least."""
+    parts = [name.split(", ") for name in names]
+    shared, most = 0, min(map(len, parts), default=1) - 1
+    while shared < most and len({each[shared] for each in parts}) == 1:
+        shared += 1
+    return [", ".join(each[shared:]) for each in parts] if len(names) > 1 else list(names)
 
 
 def title(row: Any) -> str:

@@ -43,4 +43,3 @@ class Shown:
         from orbiframe.files import write_text
 
         write_text(Path(path), self._page)
-

@@ -295,3 +295,28 @@ def test_a_bent_edge_comes_out_closed(orbiframe, cube, tmp_path):
     assert orbiframe("fit", cube, "-o", surface, "--size", 40).status == 0
     for path in (triangles, surface):
         assert "closed, orientable, genus 0, 1 component" in orbiframe("info", path).out
+
+
+def test_uv_coordinates_are_written_and_told(orbiframe, cube, tmp_path):
+    to, report = tmp_path / "a.obj", tmp_path / "a.json"
+    ran = orbiframe("fit", cube, "-o", to, "--uv", "--size", 40, "--fast", "--report", report)
+    assert ran.status == 0
+    assert "uv        cut open along" in ran.out
+    told = json.loads(report.read_text())["uv"]
+    assert told["folded"] == 0
+    assert told["angle_distortion"]["median"] >= 1
+    assert to.read_text().count("\nvt ") > 1000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["-o", "a.ply"], "a.ply: this format holds no texture coordinates; write .glb, .gltf, .obj"),
+        (["-o", "a.msh", "--order", "2"], "belong to meshes of flat faces, such as surface.obj"),
+    ],
+)
+def test_uv_coordinates_need_a_format_that_holds_them(orbiframe, cube, tmp_path, monkeypatch, arguments, said):
+    monkeypatch.chdir(tmp_path)
+    ran = orbiframe("fit", cube, *arguments, "--uv")
+    assert (ran.status, said in ran.err) == (2, True), ran.err
+    assert list(tmp_path.glob("a.*")) == []

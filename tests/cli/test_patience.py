@@ -12,6 +12,7 @@ import pytest
 from orbiframe.cli import patience
 from orbiframe.cli.patience import patient
 from orbiframe.cli.progress import Progress
+from orbiframe.cli.speech import say
 
 
 class Terminal(io.StringIO):
@@ -48,6 +49,33 @@ def test_a_stage_on_a_terminal_gets_its_seconds(monkeypatch):
         said_within(terminal, r"\rmap … 1 s", 3.0)
         Progress(terminal)("map", 1.0)
     assert "at work" not in terminal.getvalue()
+
+
+def test_a_command_without_stages_is_counted_on_a_terminal(monkeypatch):
+    monkeypatch.setattr(sys, "stderr", terminal := Terminal())
+    with patient("group"):
+        said_within(terminal, r"\rgroup … 2 s.*\rgroup … 3 s", 5.0)
+    assert re.search(r"\r +\r$", terminal.getvalue()), "the last line of the terminal is free again"
+
+
+def test_output_stands_above_the_line(monkeypatch):
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setattr(sys, "stdout", terminal)
+    with patient("group"):
+        said_within(terminal, r"group …", 5.0)
+        print("systole 3.06")
+        say("look at it")
+    assert re.search(r"\r +\rsystole 3.06\norbiframe: look at it\n$", terminal.getvalue())
+    assert sys.stdout is terminal
+
+
+def test_what_is_said_stands_above_the_line(monkeypatch):
+    monkeypatch.setattr(sys, "stderr", terminal := Terminal())
+    with patient("group"):
+        said_within(terminal, r"group …", 5.0)
+        say("look at it")
+    assert re.search(r"\r +\rorbiframe: look at it\n", terminal.getvalue())
 
 
 @pytest.mark.parametrize("quiet", [True, False])

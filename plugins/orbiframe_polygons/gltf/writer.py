@@ -20,14 +20,18 @@ from orbiframe_polygons.units import in_unit
 Array = NDArray[Any]
 
 CODES = {"u1": 5121, "u2": 5123, "u4": 5125, "f4": 5126}
-KINDS = {1: "SCALAR", 3: "VEC3", 4: "VEC4"}
+KINDS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 # What a view of a buffer is for.
 ATTRIBUTES, INDICES = 34962, 34963
+# Many programs look for points of a texture only where there is a material.
+MATERIAL = {"name": "surface", "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.8}}
 LARGEST = float(np.finfo(np.float32).max)
 
 
 def write(path: Path, polyhedron: Polyhedron) -> None:
     """Write triangles, unit normals and colours of vertices, numbers as float32; a .gltf holds its buffer itself.
+
+    Vertices whose corners have different points of a texture are written once for each of these.
 
     Coordinates in millimetres are converted to metres, with a notice; those of no unit are written as they are.
 
@@ -37,22 +41,26 @@ def write(path: Path, polyhedron: Polyhedron) -> None:
     polyhedron = in_unit(path, polyhedron, "metre")
     _require_writable(path, polyhedron)
     tell_loss(path, "colours of faces", polyhedron.face_colors is not None)
+    polyhedron, texture = _split_by_texture(polyhedron)
     buffer = _Buffer()
     attributes = {"POSITION": buffer.add(polyhedron.vertices.astype("<f4"), bounds=True)}
     normals = _unit_normals(path, polyhedron)
     if normals is not None:
         attributes["NORMAL"] = buffer.add(normals.astype("<f4"))
+    if texture is not None:
+        attributes["TEXCOORD_0"] = buffer.add(texture.astype("<f4"))
     if polyhedron.colors is not None:
         attributes["COLOR_0"] = buffer.add(*_colours(polyhedron.colors))
     few = len(polyhedron.vertices) < 2**16
     indices = buffer.add(polyhedron.tail.astype("<u2" if few else "<u4")[:, None], target=INDICES)
-    primitive = {"attributes": attributes, "indices": indices, "mode": 4}
+    primitive = {"attributes": attributes, "indices": indices, "mode": 4} | ({} if texture is None else {"material": 0})
     tree = {
         "asset": {"version": "2.0", "generator": "orbiframe"},
         "scene": 0,
         "scenes": [{"nodes": [0]}],
         "nodes": [{"mesh": 0}],
         "meshes": [{"primitives": [primitive]}],
+        **({} if texture is None else {"materials": [MATERIAL]}),
         "accessors": buffer.accessors,
         "bufferViews": buffer.views,
     }
@@ -91,6 +99,21 @@ class _Buffer:
             accessor |= {name: getattr(table, name)(axis=0).astype(float).tolist() for name in ("min", "max")}
         self.accessors.append(accessor)
         return len(self.accessors) - 1
+
+
+def _split_by_texture(polyhedron: Polyhedron) -> tuple[Polyhedron, NDArray[np.float64] | None]:
+    """The polyhedron with a vertex for each point of the texture, and these, (V, 2) from the upper left corner down."""
+    if polyhedron.corner_uv is None:
+        return polyhedron, None
+    table = np.column_stack([polyhedron.tail, polyhedron.corner_uv])
+    first, number = np.unique(table, axis=0, return_index=True, return_inverse=True)[1:]
+    vertex = polyhedron.tail[first]
+    tables = (None if a is None else a[vertex] for a in (polyhedron.normals, polyhedron.colors))
+    normals, colors = tables
+    split = Polyhedron.from_corners(
+        polyhedron.vertices[vertex], polyhedron.offsets, number.ravel(), normals=normals, colors=colors
+    )
+    return split, polyhedron.corner_uv[first] * [1.0, -1.0] + [0.0, 1.0]
 
 
 def _unit_normals(path: Path, polyhedron: Polyhedron) -> NDArray[np.float64] | None:

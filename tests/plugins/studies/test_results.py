@@ -9,6 +9,7 @@ import re
 
 import pytest
 from orbiframe_studies.orders import fitted_order, series_of
+from orbiframe_studies.report_command import told_apart
 from orbiframe_studies.results import Results
 from studies import lines, written
 
@@ -35,6 +36,21 @@ def test_an_order_is_found_again(order):
     unknowns = [50, 100, 400, 1000]
     errors = [3.0 * n ** (-order / 2) for n in unknowns]
     assert fitted_order(unknowns, errors) == pytest.approx(order)
+
+
+@pytest.mark.parametrize(
+    ("names", "short"),
+    [
+        (["a.off, ps2, size 1", "a.off, ps3, size 1"], ["ps2, size 1", "ps3, size 1"]),
+        (["a.off, ps2", "b.off, ps2"], ["a.off, ps2", "b.off, ps2"]),
+        (["a.off", "a.off, ps2"], ["a.off", "a.off, ps2"]),
+        (["a.off, ps2", "a.off, ps2"], ["ps2", "ps2"]),
+        (["a.off, ps2"], ["a.off, ps2"]),
+        ([], []),
+    ],
+)
+def test_names_leave_out_what_all_begin_with(names, short):
+    assert told_apart(names) == short
 
 
 def test_one_size_has_no_order():
