@@ -222,3 +222,20 @@ def test_a_static_page_of_every_geometry_needs_no_server(orbiframe, tmp_path, op
     assert np.ptp(picture(driver, "plane")) > 0.3
     assert {urlsplit(url).scheme for url in asked_for(driver)} <= {"file", "data"}
     assert [entry for entry in driver.get_log("browser") if entry["level"] == "SEVERE"] == []
+
+
+def test_a_screenshot_is_a_file_of_both_panes(served, open_browser):
+    from pathlib import Path
+
+    from matplotlib.image import imread
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    driver = open_browser()
+    ready(driver, served)
+    saved = Path(driver.capabilities["chrome"]["userDataDir"]) / "plate.png"
+    driver.find_element("id", "shot").click()
+    WebDriverWait(driver, 20).until(lambda _: saved.is_file() and saved.stat().st_size > 1000)
+    pixels = imread(saved)[..., :3]
+    left, right = np.array_split(pixels, 2, axis=1)
+    assert np.ptp(left) > 0.5
+    assert np.ptp(right) > 0.5
