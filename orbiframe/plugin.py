@@ -73,6 +73,14 @@ def orbiframe_stage_done(stage: str, result: object, seconds: float) -> None:
 
 
 @hookspec
+def orbiframe_show() -> str:  # type: ignore[empty-body]
+    """The target "package.module:object" that makes of a surface an object which notebooks show as a page.
+
+    Called as `shown(surface)` by `surface.show()`; of several plugins the one registered last is asked.
+    """
+
+
+@hookspec
 def orbiframe_warm_up() -> Iterable[str]:  # type: ignore[empty-body]
     """Commands that together use all compiled code of a plugin, each as it follows `orbiframe`; for `warm-up`.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,11 +11,12 @@ from typing import TYPE_CHECKING, Any
 from orbiframe.cli.boundary import add_boundary
 from orbiframe.cli.exports import export, export_options, require_known, size_of
 from orbiframe.cli.repairs import add_repairs, repaired, repairs_asked
-from orbiframe.cli.report import json_text, summary, write_report
+from orbiframe.cli.report import json_text, summary, warnings_of, write_report
 from orbiframe.cli.speech import say
 from orbiframe.components.registry import Registry
 from orbiframe.errors import UsageError
 from orbiframe.files.destination import require_destination, require_textures
+from orbiframe.files.folder import require_folder
 from orbiframe.files.outputs import require_apart, require_output
 
 if TYPE_CHECKING:
@@ -23,6 +25,8 @@ if TYPE_CHECKING:
     from orbiframe.fitting.pipeline import Result
     from orbiframe.fitting.stages import Progress
     from orbiframe.meshes.polyhedron import Polyhedron
+
+LOOK = 3  # the exit status of a fit that is done and whose report warns
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -65,7 +69,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--exact", action="store_true", help="to CAD: the exact patches of --basis ps2, ps6 and others")
     add("--order", metavar="Q", type=int, help="write curved triangles of order 1 to 6, for finite elements")
     add("--format", metavar="NAME", help="with --order: the format, such as gmsh-2.2, instead of that of the suffix")
-    add("--report", metavar="FILE.json", type=Path, help="write the report")
+    add(
+        "--report",
+        metavar="DIR",
+        type=Path,
+        help="write the report: a folder for a page with pictures, or FILE.json; status 3 if it warns",
+    )
     add("--save", metavar="FILE", type=Path, help="write the surface itself, to be evaluated anywhere")
     add("--json", action="store_true", help="print the report as JSON instead of the summary")
     add("--quiet", action="store_true", help="print nothing but errors")
@@ -85,7 +94,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     report, written = fitted(args, registry, args.progress)
     if not args.quiet:
         print(json_text(report) if args.json else summary(report, written=written))
-    return 0
+    return LOOK if args.report and warnings_of(report) else 0
 
 
 def fitted(args: argparse.Namespace, registry: Registry, progress: Progress) -> tuple[dict[str, Any], str | None]:
@@ -115,8 +124,24 @@ def fitted(args: argparse.Namespace, registry: Registry, progress: Progress) -> 
     if args.save:
         _save(args.save, found)
     if args.report:
-        write_report(args.report, found.report)
+        _write_report(args, found, progress)
     return found.report, written
+
+
+def _write_report(args: argparse.Namespace, found: Parts, progress: Progress) -> None:
+    """The report with the command that makes it again: as data, or as a page in a folder."""
+    command = shlex.join(["orbiframe", *args.words])
+    if not _is_page(args.report):
+        write_report(args.report, {**found.report, "command": command})
+        return
+    from orbiframe.cli.fit_page import write_page
+
+    write_page(args.report, found, command, progress)
+
+
+def _is_page(path: Path) -> bool:
+    """Whether a report is a page in a folder: what has no suffix, or is a folder."""
+    return path.is_dir() or not path.suffix
 
 
 def _only(found: Parts, path: Path) -> Result:
@@ -217,6 +242,9 @@ def _require_destinations(args: argparse.Namespace, config: Config, registry: Re
     require_destination(args.output, registry, args.format, kind=kind)
     if config.output.uv:
         _require_textures(args, kind, registry)
-    for path in (args.report, args.save):
-        if path is not None:
-            require_output(path)
+    if args.report is not None and _is_page(args.report):
+        require_folder(args.report)
+    elif args.report is not None:
+        require_output(args.report)
+    if args.save is not None:
+        require_output(args.save)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import time
 import warnings
 from collections import Counter
@@ -17,7 +16,8 @@ from orbiframe.cli.progress import Progress
 from orbiframe.cli.report import plain
 from orbiframe.cli.speech import say
 from orbiframe.components.registry import Registry
-from orbiframe.errors import FormatError, OrbiframeError, UsageError
+from orbiframe.errors import OrbiframeError, UsageError
+from orbiframe.files.folder import make_folder
 from orbiframe.workers.pool import Outcome, work
 from orbiframe.workers.worker_process import COMPILING, Task, Tell
 
@@ -38,7 +38,7 @@ def run_many(args: argparse.Namespace, registry: Registry) -> int:
     """Fit all meshes; a line for each, and the status is 1 if one could not be fitted."""
     jobs = _jobs(args)
     _require_config(args, registry)
-    _make_folder(args.into)
+    make_folder(args.into)
     shown = _Shown(args.progress, len(jobs), quiet=args.quiet, as_json=args.json)
     settings = argparse.Namespace(**{name: value for name, value in vars(args).items() if name not in _KEPT_HERE})
     for outcome in work(jobs, fit_task, (settings, registry), workers=min(args.workers, len(jobs)), told=shown.told):
@@ -80,15 +80,6 @@ def _require_config(args: argparse.Namespace, registry: Registry) -> None:
     from orbiframe.fitting.config import Config
 
     Config.load(args.config, overrides(args), registry)
-
-
-def _make_folder(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FormatError(f"the folder {folder} cannot be made: {error.strerror}; name another one") from error
-    if not os.access(folder, os.W_OK):
-        raise FormatError(f"the folder {folder} cannot be written to; name another one")
 
 
 class _Shown:

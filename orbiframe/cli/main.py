@@ -22,14 +22,18 @@ from orbiframe.errors import OrbiframeError, PluginError, UsageError
 
 INTERRUPTED = 130
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-EPILOG = "exit status: 0 done; 1 the data or the mathematics do not allow it; 2 wrong usage or configuration"
+EPILOG = (
+    "exit status: 0 done; 1 the data or the mathematics do not allow it; 2 wrong usage or configuration; "
+    "3 a fit is done, and its report warns"
+)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status.
 
-    0: done; 1: the data or the mathematics do not allow it; 2: wrong usage or configuration; 130: interrupted. Errors
-    are one sentence on the standard error stream, with a traceback only after `--debug`.
+    0: done; 1: the data or the mathematics do not allow it; 2: wrong usage or configuration; 3: a fit is done, and its
+    report warns; 130: interrupted. Errors are one sentence on the standard error stream, with a traceback only after
+    `--debug`.
     """
     arguments = sys.argv[1:] if argv is None else list(argv)
     _fix_threads()
@@ -110,7 +114,7 @@ def parsed(arguments: list[str], registry: Registry) -> argparse.Namespace:
         registry.component("command", chosen)
     parser.set_defaults(run=lambda *_: _print_help(parser))
     args = parser.parse_args(arguments)
-    args.command = chosen or ""
+    args.command, args.words = chosen or "", tuple(arguments)
     args.progress = Progress(quiet=getattr(args, "quiet", False), mode=args.progress)
     return args
 

@@ -29,6 +29,12 @@ def summary(report: Mapping[str, Any], *, written: str | None = None) -> str:
     return "\n".join(f"{name:<10}{words}" for name, words in lines)
 
 
+def warnings_of(report: Mapping[str, Any]) -> list[str]:
+    """Sentences for what a user should look at: the notes of all parts, and where digits are lost."""
+    parts = report.get("parts", [report])
+    return [text for part in parts for text in (*_crowding(part["map"]["crowding"]), *part["notes"])]
+
+
 def _lines_of_parts(report: Mapping[str, Any], written: str | None) -> Iterator[tuple[str, str]]:
     """The lines of every part, without its output, and those of all together."""
     parts, fit = report["parts"], report["fit"]
@@ -57,7 +63,7 @@ def _lines(report: Mapping[str, Any], written: str | None) -> Iterator[tuple[str
         f"{mapped['triangles']} triangles, {mapped['not_positive']} not positive; angle distortion "
         f"median {angle['median']:.2f}, p95 {angle['p95']:.2f}, max {angle['max']:.2f}",
     )
-    yield from _crowding(mapped["crowding"])
+    yield from (("warning", words) for words in _crowding(mapped["crowding"]))
     faces = report["faces"]
     if faces["corners"] > 3:
         yield "faces", _shapes(faces) + (f" (before: {_shapes(faces['before'])})" if faces["before"] else "")
@@ -128,13 +134,12 @@ def _texture(uv: Mapping[str, Any] | None) -> Iterator[tuple[str, str]]:
         )
 
 
-def _crowding(crowding: Mapping[str, float]) -> Iterator[tuple[str, str]]:
+def _crowding(crowding: Mapping[str, float]) -> Iterator[str]:
     """A warning where long thin parts of the mesh have cost digits; the digits of a fine mesh are not worth a line."""
     if crowding["digits_lost"] >= WORTH_A_WARNING:
         yield (
-            "warning",
             f"crowding: long thin parts get little of X/H (smallest triangle {crowding['area_ratio']:.0e} of the "
-            f"largest); {crowding['digits_lost']:.0f} of 16 digits are lost there",
+            f"largest); {crowding['digits_lost']:.0f} of 16 digits are lost there"
         )
 
 

@@ -204,6 +204,13 @@ class Registry:
         found = call_each(self._manager, "orbiframe_warm_up")
         return [line for lines in reversed(found) for line in cast("Iterable[str]", lines)]
 
+    def shown(self, surface: object) -> object:
+        """What notebooks show of a surface (hook `orbiframe_show`). Raises PluginError where no plugin shows any."""
+        found = call_each(self._manager, "orbiframe_show")
+        if not found:
+            raise PluginError("no plugin shows surfaces; `surface.picture()` is a picture of it")
+        return resolve(Component("show", "show", str(found[0]), ""), "the hook orbiframe_show")(surface)
+
     # ---- filling --------------------------------------------------------------------------------------------------
 
     def _admit(self, entry: EntryPoint) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -25,15 +26,33 @@ Floats = NDArray[np.float64]
 _TOO_FAR = 1.0
 # Feet farther than this share of the spacing of functions, and this share of all that are worst, are found exactly.
 _NEAR, _WORST = 0.1, 0.01
+# So many places are told where the error is largest, so far apart, in diagonals.
+PLACES, APART = 6, 0.08
+
+
+class Place(NamedTuple):
+    """A point in space, and its distance to the other of mesh and surface."""
+
+    distance: float
+    place: tuple[float, float, float]
 
 
 class Distances(NamedTuple):
-    """Root mean square, mean and largest of distances, and the point in space where they are largest."""
+    """Root mean square and mean of distances, and where they are largest: the farthest place first."""
 
     rms: float
     mean: float
-    max: float
-    place: tuple[float, float, float]
+    places: tuple[Place, ...]
+
+    @property
+    def max(self) -> float:
+        """The largest distance."""
+        return self.places[0].distance
+
+    @property
+    def place(self) -> tuple[float, float, float]:
+        """The point in space that has it."""
+        return self.places[0].place
 
 
 class Accuracy(NamedTuple):
@@ -143,6 +162,17 @@ def _require_sane(there: Floats, values: Floats, weights: Floats) -> None:
 
 
 def _distances(away: Floats, weights: Floats, where: Floats) -> Distances:
-    share, worst = weights / weights.sum(), first_largest(away)
-    x, y, z = (float(number) for number in where[worst])
-    return Distances(float(np.sqrt(share @ away**2)), float(share @ away), float(away[worst]), (x, y, z))
+    share = weights / weights.sum()
+    return Distances(float(np.sqrt(share @ away**2)), float(share @ away), tuple(_farthest(away, where)))
+
+
+def _farthest(away: Floats, where: Floats) -> Iterator[Place]:
+    """The places of the largest distances, none near one before it."""
+    left = away.copy()
+    for _ in range(PLACES):
+        worst = first_largest(left)
+        if not left[worst] >= 0:
+            return
+        x, y, z = (float(number) for number in where[worst])
+        yield Place(float(away[worst]), (x, y, z))
+        left[np.linalg.norm(where - where[worst], axis=1) < APART] = -1.0

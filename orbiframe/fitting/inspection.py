@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.meshes.nearest_points import NearestPoints
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.self_intersections import self_intersecting
 from orbiframe.surfaces.folds import folded_share
@@ -18,13 +19,15 @@ _FOLD = 1e-6
 
 class Inspection(NamedTuple):
     """The share of the area that is folded over; triangles that pass through others, (n,), in the mesh and in the
-    output; the volumes within both, relative to that of the mesh, None where there is none.
+    output; the volumes within both, relative to that of the mesh, None where there is none; away: the largest distance
+    of a vertex of the output to the mesh, in diagonals.
     """
 
     folded: float
     in_mesh: NDArray[np.intp]
     in_output: NDArray[np.intp]
     volume: float | None
+    away: float
 
     def notes(self, output: Polyhedron) -> Iterator[str]:
         """Sentences for what a user should look at."""
@@ -47,7 +50,9 @@ def inspected(surface: OrbifoldSurface, output: Polyhedron, bisected: bool) -> I
     inside, outside = _volume(mesh), _volume(placed)
     closed = surface.triangulation.inside is None
     ratio = outside / inside if closed and not output.same.any() and abs(inside) > 0 else None
-    return Inspection(folded_share(surface, fine), self_intersecting(mesh), self_intersecting(output), ratio)
+    crossing = self_intersecting(mesh), self_intersecting(output)
+    away = float(NearestPoints(mesh).distance(placed.vertices).max())
+    return Inspection(folded_share(surface, fine), *crossing, ratio, away)
 
 
 def _volume(mesh: Polyhedron) -> float:

@@ -32,7 +32,7 @@ from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.surface_type import without_unused_vertices
 from orbiframe.meshes.told_by_ends import require_told_by_ends
 from orbiframe.surfaces.surface import OrbifoldSurface
-from orbiframe.surfaces.texture_coordinates import texture_coordinates
+from orbiframe.surfaces.textures import texture_coordinates
 
 _OUTPUT_FACES = 40_000
 
@@ -40,6 +40,8 @@ _OUTPUT_FACES = 40_000
 @dataclass(frozen=True, eq=False, repr=False)
 class Result(GivenBack):
     """What a fit returns: the surface, a mesh on it with normals, and the report of all steps as plain data.
+
+    input: the mesh, oriented, all of whose vertices are in faces; its triangles are `surface.refinement.coarse`.
 
     >>> from orbiframe import fit
     >>> result = fit("dataset:sphere", size=60)
@@ -53,6 +55,7 @@ class Result(GivenBack):
     surface: OrbifoldSurface
     output: Polyhedron
     report: dict[str, Any]
+    input: Polyhedron
 
 
 def fit(
@@ -97,7 +100,8 @@ def _fitted(mesh: object, config: Config, stages: Stages, share: float) -> Resul
     polyhedron = mesh if isinstance(mesh, Polyhedron) else stages("read", mesh_of, mesh, config, registry)
     surface_type = stages("topology", partial(require_closed_surface, boundary=config.boundary != "error"), polyhedron)
     require_density(config.output.refine, int((polyhedron.face_sizes - 2).sum()), config.places)
-    unit, origin, scale = _normalised(oriented(without_unused_vertices(polyhedron)))
+    placed = oriented(without_unused_vertices(polyhedron))
+    unit, origin, scale = _normalised(placed)
     mapping = mapping_of(unit, config, stages)
     found = Approximations(mapping, config, stages).wanted()
     surface = replace(found.surface, origin=origin, scale=scale)
@@ -105,7 +109,7 @@ def _fitted(mesh: object, config: Config, stages: Stages, share: float) -> Resul
     require_told_by_ends(output, surface_type)
     inspection = stages("inspection", inspected, surface, output, config.output.refine is None)
     summary = report(surface, surface_type, mapping, config, found, output, inspection, stages.seconds)
-    return Result(surface, output, summary)
+    return Result(surface, output, summary, placed)
 
 
 def _tessellated(surface: OrbifoldSurface, output: Output, wanted: float) -> Polyhedron:

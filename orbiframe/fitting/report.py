@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import platform
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
@@ -9,11 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.fitting.accuracy import Accuracy
+from orbiframe.fitting.accuracy import APART, PLACES, Accuracy, Place
 from orbiframe.fitting.approximation import Approximation
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.inspection import Inspection
 from orbiframe.fitting.mapping import Mapping
+from orbiframe.functions.basis import DifferentiableBasis
 from orbiframe.meshes.face_diagonals import RULE, cut_into_triangles
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
@@ -21,7 +23,7 @@ from orbiframe.meshes.surface_type import SurfaceType
 from orbiframe.surfaces.border import Border
 from orbiframe.surfaces.crease_quality import crease_quality
 from orbiframe.surfaces.surface import OrbifoldSurface
-from orbiframe.surfaces.texture_coordinates import texture_distortion
+from orbiframe.surfaces.textures import texture_distortion
 from orbiframe.triangulations.face_shapes import FaceShapes
 from orbiframe.triangulations.local_girth import girth_radius
 from orbiframe.triangulations.lost_digits import crowding_of
@@ -77,7 +79,7 @@ def report(
             "rms": rms,
             "max": largest,
         },
-        "distance": _distances_report(found.accuracy, surface),
+        "distance": _distances_report(found.accuracy, surface, inspection.away),
         "shape": {
             "folded_share": inspection.folded,
             "self_intersections": {"mesh": len(inspection.in_mesh), "output": len(inspection.in_output)},
@@ -85,6 +87,7 @@ def report(
             "girth": girth_radius(found.mapped.triangulation),
             "spacing": float(np.sqrt(area_in_space / surface.basis.size)),
         },
+        "curvature": _curvature_report(surface),
         "uv": _texture_report(output),
         "creases": None if quality is None else quality._asdict() | {"angle_from": config.data.creases},
         "notes": [*found.notes, *inspection.notes(output), *(() if quality is None else quality.notes())],
@@ -120,8 +123,11 @@ def _faces_report(now: FaceShapes, before: FaceShapes | None, count: int) -> dic
     return {**now.first(count).summary(), "before": None if before is None else before.first(count).summary()}
 
 
-def _distances_report(accuracy: Accuracy, surface: OrbifoldSurface) -> dict[str, Any]:
-    """Distances in diagonals, with the places in the coordinates of the mesh where they are largest."""
+def _distances_report(accuracy: Accuracy, surface: OrbifoldSurface, of_output: float) -> dict[str, Any]:
+    """Distances in diagonals, with the places in the coordinates of the mesh where they are largest.
+
+    of_output: the largest distance of a vertex of the output to the mesh.
+    """
     named = {
         "mesh_to_surface": accuracy.to_surface,
         "surface_to_mesh": accuracy.to_mesh,
@@ -132,10 +138,31 @@ def _distances_report(accuracy: Accuracy, surface: OrbifoldSurface) -> dict[str,
             "rms": part.rms,
             "mean": part.mean,
             "max": part.max,
-            "place": [float(x) for x in surface.origin + surface.scale * np.array(part.place)],
+            "place": _in_space(surface, part.place),
         }
         for name, part in named.items()
-    } | {"normals": accuracy.normals}
+    } | {
+        "hausdorff": max(accuracy.to_surface.max, accuracy.to_mesh.max, of_output),
+        "normals": accuracy.normals,
+        "worst": _worst(accuracy, surface),
+    }
+
+
+def _worst(accuracy: Accuracy, surface: OrbifoldSurface) -> list[dict[str, Any]]:
+    """Where mesh and surface are farthest from each other, the worst place first."""
+    both = {"mesh": accuracy.to_surface.places, "surface": accuracy.to_mesh.places}
+    found = [(each, name) for name, places in both.items() for each in places]
+    told: list[tuple[Place, str]] = []
+    for each, name in sorted(found, key=lambda pair: -pair[0].distance):
+        if all(math.dist(each.place, other.place) > APART for other, _ in told):
+            told.append((each, name))
+    return [
+        {"on": name, "distance": each.distance, "place": _in_space(surface, each.place)} for each, name in told[:PLACES]
+    ]
+
+
+def _in_space(surface: OrbifoldSurface, place: tuple[float, float, float]) -> list[float]:
+    return [float(x) for x in surface.origin + surface.scale * np.array(place)]
 
 
 def _cut_report(polyhedron: Polyhedron, triangles: Polyhedron) -> dict[str, Any]:
@@ -162,6 +189,21 @@ def _map_report(triangulation: Triangulation) -> dict[str, Any]:
         "angle_distortion": {"median": median, "p95": p95, "max": float(distortion.max())},
         "weights": triangulation.weights,
     }
+
+
+def _curvature_report(surface: OrbifoldSurface) -> dict[str, Any] | None:
+    """The curvatures at the vertices of the refined mesh, in units of the file; None without derivatives."""
+    if not isinstance(surface.basis, DifferentiableBasis):
+        return None
+    with np.errstate(all="ignore"):
+        found = surface.curvature(surface.vertex_points)
+        bent = np.abs(found.mean) + np.sqrt(np.maximum(found.mean**2 - found.gaussian, 0.0))
+        radius = float(1 / bent.max())
+    levels = {"min": 0.0, "p05": 0.05, "median": 0.5, "p95": 0.95, "max": 1.0}
+    return {
+        name: dict(zip(levels, _weighted_quantiles(values, found.element, list(levels.values())), strict=True))
+        for name, values in (("gaussian", found.gaussian), ("mean", np.abs(found.mean)))
+    } | {"radius": radius}
 
 
 def _texture_report(output: Polyhedron) -> dict[str, Any] | None:

@@ -27,7 +27,7 @@ from .repair import (
     triangulate as triangulate,
     weld as weld,
 )
-from .subdivision import Refinement as Refinement, refine as refine
+from .subdivision import Refinement as Refinement, grid_of as grid_of, refine as refine
 from .surface_type import (
     SurfaceType as SurfaceType,
     doubled_edges as doubled_edges,

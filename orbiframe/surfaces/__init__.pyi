@@ -1,5 +1,6 @@
 """The public names of orbiframe.surfaces, each with the module it lives in."""
 
+from .curved_edges import edge_curves as edge_curves
 from .curved_triangles import (
     CurvedMesh as CurvedMesh,
     curved_mesh as curved_mesh,
@@ -21,9 +22,10 @@ from .quadrilateral_patches import QuadrilateralPatches as QuadrilateralPatches
 from .shaded_mesh import ShadedPicture as ShadedPicture, shaded_picture as shaded_picture
 from .surface import Curvature as Curvature, OrbifoldSurface as OrbifoldSurface, Tessellation as Tessellation
 from .surface_forms import SurfaceForms as SurfaceForms
-from .texture_coordinates import (
+from .textures import (
     TextureDistortion as TextureDistortion,
     texture_coordinates as texture_coordinates,
     texture_distortion as texture_distortion,
 )
 from .triangle_patches import TrianglePatches as TrianglePatches
+from .values_to_show import ShownValues as ShownValues, shown_values as shown_values

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import struct
 import zlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +28,8 @@ _CLAY = np.array([195.0, 211.0, 226.0])
 _LIGHT = np.array([-0.35, 0.55, 0.76]) / np.linalg.norm([-0.35, 0.55, 0.76])
 _AMBIENT = 0.42
 _LARGEST = 4096
+# A line is drawn where nothing is nearer to the eye by more than this share of the extent, in samples so far apart.
+_BEHIND, _STEP, _INK = 0.01, 0.7, np.array([0.12, 0.16, 0.2])
 _SAMPLES_AT_ONCE = 1 << 21
 
 
@@ -65,23 +69,41 @@ def _chunk(name: bytes, content: bytes) -> bytes:
     return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
 
 
-def shaded_picture(mesh: Polyhedron, *, width: int = 480, view: View = VIEW) -> ShadedPicture:
+def shaded_picture(
+    mesh: Polyhedron,
+    *,
+    width: int = 480,
+    view: View = VIEW,
+    colours: Floats | None = None,
+    lines: Sequence[Floats] = (),
+) -> ShadedPicture:
     """A mesh seen from far away, lit from above on the left; smooth where the mesh has normals, else with its facets.
 
-    width: of the image, in pixels; view: the direction from the mesh to the eye; the third axis points up. Raises
-    UsageError for a width that is not 1 to 4096, and a view that is no direction.
+    width: of the image, in pixels; view: the direction from the mesh to the eye; the third axis points up. colours:
+    (V, 3), red, green and blue from 0 to 1 at the vertices; lines: chains of points (n, 3) in space, dark where they
+    are seen. Raises UsageError for a width that is not 1 to 4096, and a view that is no direction.
     """
     if not 1 <= width <= _LARGEST:
         raise UsageError(f"a picture {width} pixels wide; give 1 to {_LARGEST}")
     axes = _axes(np.asarray(view, dtype=np.float64))
     triangles = triangulated(mesh)
     corners, light = triangles.vertices[triangles.triangles] @ axes.T, _light(triangles, axes)
-    place, height = _placed(corners, width * _FINE)
+    frame = _Frame.of(corners, width * _FINE)
+    place, height = frame.placed(corners), frame.height
     size = height * _FINE * width * _FINE
-    depth, shade = np.full(size, -np.inf), np.zeros(size)
+    # Brightness, and where there are colours red, green and blue, lit.
+    seen = light[..., None] if colours is None else _lit(light, colours[triangles.triangles])
+    depth, shade = np.full(size, -np.inf), np.zeros((size, seen.shape[2]))
     for count, part in _parts(place):
-        _splat(count, place[part], light[part], width * _FINE, depth, shade)
+        _splat(count, place[part], seen[part], width * _FINE, depth, shade)
+    for line in lines:
+        _draw(frame.placed(np.asarray(line) @ axes.T), width * _FINE, depth, shade)
     return ShadedPicture(_coloured(depth, shade, height, width))
+
+
+def _lit(light: Floats, colours: Floats) -> Floats:
+    """Colours (F, 3, 3) at corners with a brightness (F, 3) each."""
+    return np.asarray(np.clip(colours * (0.35 + 0.75 * light[..., None]), 0.0, 1.0))
 
 
 def _axes(eye: Floats) -> Floats:
@@ -106,15 +128,27 @@ def _light(mesh: Polyhedron, axes: Floats) -> Floats:
     return np.asarray(_AMBIENT + (1 - _AMBIENT) * np.maximum(seen @ _LIGHT, 0.0))
 
 
-def _placed(corners: Floats, width: int) -> tuple[Floats, int]:
-    """Corners (F, 3, 3) as column, row and height above the page, in samples, and how many pixels high the page is."""
-    low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
-    extent = max(float(high[0] - low[0]), float(high[1] - low[1]) / 4, np.finfo(float).tiny)
-    scale = (1 - 2 * _MARGIN) * width / extent
-    height = int(np.ceil((float(high[1] - low[1]) * scale + 2 * _MARGIN * width) / _FINE))
-    middle = (low + high) / 2
-    place = (corners - middle) * scale * np.array([1.0, -1.0, 1.0])
-    return place + np.array([width / 2, height * _FINE / 2, 0.0]), height
+class _Frame(NamedTuple):
+    """Where points lie on the page, in samples: their middle, samples for a unit, the page's width; pixels high."""
+
+    middle: Floats
+    scale: float
+    width: int
+    height: int
+
+    @classmethod
+    def of(cls, corners: Floats, width: int) -> _Frame:
+        """The frame of a page that corners (F, 3, 3) fill."""
+        low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+        extent = max(float(high[0] - low[0]), float(high[1] - low[1]) / 4, np.finfo(float).tiny)
+        scale = (1 - 2 * _MARGIN) * width / extent
+        height = int(np.ceil((float(high[1] - low[1]) * scale + 2 * _MARGIN * width) / _FINE))
+        return cls((low + high) / 2, scale, width, height)
+
+    def placed(self, points: Floats) -> Floats:
+        """Column, row and height above the page of points (…, 3)."""
+        place = (points - self.middle) * self.scale * np.array([1.0, -1.0, 1.0])
+        return np.asarray(place + np.array([self.width / 2, self.height * _FINE / 2, 0.0]))
 
 
 def _parts(place: Floats) -> list[tuple[int, Ints]]:
@@ -140,7 +174,7 @@ def _splat(count: int, place: Floats, light: Floats, width: int, depth: Floats, 
     inside = i + j <= count
     weights = np.stack([i[inside], j[inside], count - i[inside] - j[inside]], axis=1) / count
     points = np.einsum("sc,fci->fsi", weights, place).reshape(-1, 3)
-    bright = np.einsum("sc,fc->fs", weights, light).ravel()
+    bright = np.einsum("sc,fck->fsk", weights, light).reshape(-1, light.shape[2])
     column, row = points[:, 0].astype(np.intp), points[:, 1].astype(np.intp)
     pixel = row * width + column
     order = np.argsort(points[:, 2], kind="stable")
@@ -150,14 +184,32 @@ def _splat(count: int, place: Floats, light: Floats, width: int, depth: Floats, 
     shade[pixel[order]] = bright[order]
 
 
+def _draw(at: Floats, width: int, depth: Floats, shade: Floats) -> None:
+    """Darken the samples along a chain of points, two wide, where the chain is not behind something."""
+    length = np.linalg.norm(np.diff(at[:, :2], axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(length)])
+    steps = np.linspace(0.0, along[-1], 2 + int(along[-1] / _STEP))
+    points = np.stack([np.interp(steps, along, column) for column in at.T], axis=1)
+    allowed = points[:, 2] + _BEHIND * width
+    for right, down in ((0, 0), (1, 0), (0, 1), (1, 1)):
+        column, row = points[:, 0].astype(np.intp) + right, points[:, 1].astype(np.intp) + down
+        inside = (column >= 0) & (column < width) & (row >= 0) & (row < len(depth) // width)
+        pixel = (row * width + column)[inside]
+        seen = pixel[(depth[pixel] <= allowed[inside]) & np.isfinite(depth[pixel])]
+        shade[seen] = _INK if shade.shape[1] == 3 else _INK[0]
+
+
 def _coloured(depth: Floats, shade: Floats, height: int, width: int) -> NDArray[np.uint8]:
     """The pixels, each the mean of its samples."""
     shape = (height, _FINE, width, _FINE)
     cover = np.isfinite(depth).reshape(shape)
     share = cover.mean(axis=(1, 3))
-    mean = (shade.reshape(shape) * cover).mean(axis=(1, 3)) / np.where(share > 0, share, 1.0)
-    bright = 255 - (255 - _CLAY) * np.minimum(2 - 1.15 * mean, 1.6)[..., None]
+    total = (shade.reshape(*shape, -1) * cover[..., None]).mean(axis=(1, 3))
+    mean = total / np.where(share > 0, share, 1.0)[..., None]
+    if mean.shape[2] == 1:
+        bright = 255 - (255 - _CLAY) * np.minimum(2 - 1.15 * mean, 1.6)
+        mean = np.minimum(mean * 1.12, 1.0) * bright / 255
     pixels = np.empty((height, width, 4), dtype=np.uint8)
-    pixels[..., :3] = np.clip(np.minimum(mean * 1.12, 1.0)[..., None] * bright, 0, 255) * (share > 0)[..., None]
+    pixels[..., :3] = np.clip(255 * mean, 0, 255) * (share > 0)[..., None]
     pixels[..., 3] = np.round(255 * share)
     return pixels

@@ -131,6 +131,11 @@ class OrbifoldSurface:
         triangles, places = require_places(face, barycentric, self.refinement.coarse.face_count)
         return self.triangulation.locate(*self.refinement.locate(triangles, places))
 
+    @property
+    def vertex_points(self) -> Points:
+        """The points of X/H of the vertices of the refined mesh."""
+        return Points(self.triangulation.patch, self.triangulation.points)
+
     def evaluate(self, points: Points) -> Floats:
         """The surface points (n, 3) over points of X/H."""
         return np.asarray(self.origin + self.scale * self.basis.values(points, self.coefficients))
@@ -213,6 +218,12 @@ class OrbifoldSurface:
         if path is not None:
             made.save(path)
         return made
+
+    def show(self) -> Any:
+        """The surface to be turned in a notebook: Jupyter, marimo or VS Code; a picture where no JavaScript runs."""
+        from orbiframe.components.registry import Registry
+
+        return Registry.discover().shown(self)
 
     def fit_field(
         self, points: Points | ArrayLike, values: ArrayLike, *, fitter: Fitter | None = None, basis: Basis | None = None

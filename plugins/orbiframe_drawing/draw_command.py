@@ -48,9 +48,9 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
 
 
 def _picture(args: argparse.Namespace, registry: Registry) -> Picture:
+    from orbiframe.triangulations import Tessellation
     from orbiframe_drawing.solid import VIEW
     from orbiframe_drawing.solid_picture import surface_picture
-    from orbiframe_drawing.tessellation import Tessellation
     from orbiframe_drawing.tessellation_picture import tessellation_picture
 
     view = VIEW if args.view is None else tuple(args.view)

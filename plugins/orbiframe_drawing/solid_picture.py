@@ -7,13 +7,13 @@ from numpy.typing import NDArray
 
 from orbiframe import Group, Marking, OrbifoldSurface, Polyhedron
 from orbiframe.meshes import outline
+from orbiframe.triangulations import Tessellation
 from orbiframe.words import text_of
 from orbiframe_drawing.colours import INK, line_colour
 from orbiframe_drawing.group_picture import group_picture
 from orbiframe_drawing.page import MARGIN
 from orbiframe_drawing.picture import Item, Label, Picture, Shape, beside
 from orbiframe_drawing.solid import VIEW, Solid3D
-from orbiframe_drawing.tessellation import Tessellation
 from orbiframe_drawing.tessellation_picture import tessellation_picture
 
 Floats = NDArray[np.float64]

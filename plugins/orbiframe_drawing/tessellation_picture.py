@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import UsageError
+from orbiframe.triangulations import FaceCopies, Tessellation
 from orbiframe_drawing.colours import GREY, INK, line_colour, tint
 from orbiframe_drawing.models import Model, model_of
 from orbiframe_drawing.page import WIDTH, Page
 from orbiframe_drawing.picture import Item, Picture, Shape, chained
-from orbiframe_drawing.tessellation import FaceCopies, Tessellation
 from orbiframe_drawing.tiles import disc_area
 
 Floats = NDArray[np.float64]

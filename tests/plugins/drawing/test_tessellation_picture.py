@@ -9,12 +9,12 @@ import pytest
 from orbiframe_drawing.picture import Raster
 from orbiframe_drawing.solid import Solid3D
 from orbiframe_drawing.solid_picture import cut_picture, surface_picture
-from orbiframe_drawing.tessellation import Tessellation
 from orbiframe_drawing.tessellation_picture import tessellation_picture
 
 from orbiframe import Config, Polyhedron, Registry, Word, fit, read
 from orbiframe.delaunay import poisson_disc, polygon_triangulation
 from orbiframe.meshes.orientation import reversed_faces
+from orbiframe.triangulations import Tessellation
 from orbiframe.words.word import text_of
 
 DATASETS = Path(__file__).parents[3] / "datasets"

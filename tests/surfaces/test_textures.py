@@ -13,7 +13,7 @@ from orbiframe.fitting import pipeline
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.unions import disjoint_union
 from orbiframe.surfaces.surface import OrbifoldSurface
-from orbiframe.surfaces.texture_coordinates import texture_coordinates, texture_distortion
+from orbiframe.surfaces.textures import texture_coordinates, texture_distortion
 from orbiframe.triangulations.unrolled import unrolled
 
 NAMES = [

@@ -9,13 +9,19 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import Geometry, Orbifold, Polyhedron, Triangulation
-from orbiframe.meshes import Bisection, outline
-from orbiframe.triangulations import GeodesicTriangulation
+from orbiframe.meshes.bisection import Bisection
+from orbiframe.meshes.face_diagonals import outline
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.orbifolds.orbifold import Orbifold
+from orbiframe.planes.geometry import Geometry
+from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
+from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
+
+_AT_ONCE = 1 << 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +85,34 @@ class Tessellation:
         corners = np.einsum("fij,fkj->fki", triangulation.placement, triangulation.corners)
         return cls(triangulation.orbifold, (LiftedFaces(triangulation.patch, corners),))
 
+    @classmethod
+    def of_triangles(cls, triangulation: Triangulation) -> Tessellation:
+        """The triangles of a refined mesh that is mapped to X/H, in their order."""
+        first = triangulation.patch[triangulation.polyhedron.triangles[:, 0]]
+        return cls(triangulation.orbifold, (LiftedFaces(first, triangulation.lifts),))
+
+    def homes(self) -> list[Floats]:
+        """For every face, in the order of `faces`, that lift to the frame of patch 0 which is nearest to its origin.
+
+        Arrays (F, n, 3): together they cover X/H once, about the origin.
+        """
+        middles = [self.geometry.project(faces.corners.sum(axis=1)) for faces in self.faces]
+        reach = max(float(self._away(x).max()) for x in middles)
+        radius = 2 * reach
+        while True:
+            patches, isometry = self.orbifold.lifts(0, radius)
+            pairs = zip(self.faces, middles, strict=True)
+            found = [_nearest(self.geometry, f.patch, x, patches, isometry) for f, x in pairs]
+            # A nearer copy has its origin within `reach` of a middle that is no farther than the one found.
+            whole = self.geometry.curvature > 0 and radius > np.pi
+            if whole or max(float(away.max()) for _, away in found) + reach <= radius:
+                moved = [isometry[copy] for copy, _ in found]
+                return [np.einsum("fij,fcj->fci", g, f.corners) for g, f in zip(moved, self.faces, strict=True)]
+            radius = 1.5 * radius + 0.1
+
+    def _away(self, x: Floats) -> Floats:
+        return np.asarray(self.geometry.distance(self.geometry.origin, x))
+
     def copies(self, radius: float, patch: int = 0, centre: Floats | None = None) -> Iterator[FaceCopies]:
         """All lifts of faces of patches whose origins lie within a radius about `centre`, in a frame with it as origin.
 
@@ -103,6 +137,19 @@ def _lifted(polyhedron: Polyhedron, triangulation: Triangulation, steps: Floats,
         corners.append(np.einsum("fij,fj->fi", frame, triangulation.points[vertices[:, k]]))
         frame = frame @ steps[halfedge[:, k]]
     return LiftedFaces(triangulation.patch[vertices[:, 0]], np.stack(corners, axis=1))
+
+
+def _nearest(geometry: Geometry, home: Ints, middles: Floats, patches: Ints, isometry: Floats) -> tuple[Ints, Floats]:
+    """Which copy of its patch brings the middle (F, 3) of each face nearest to the origin, and how near; else inf."""
+    copy, away = np.zeros(len(home), dtype=np.intp), np.full(len(home), np.inf)
+    for patch in np.unique(home):
+        rows, choices = np.flatnonzero(home == patch), np.flatnonzero(patches == patch)
+        for part in np.array_split(rows, 1 + len(rows) * len(choices) // _AT_ONCE) if len(choices) else ():
+            there = np.einsum("kij,fj->kfi", isometry[choices], middles[part])
+            distance = geometry.distance(geometry.origin, there)
+            best = np.argmin(distance, axis=0)
+            copy[part], away[part] = choices[best], distance[best, np.arange(len(part))]
+    return copy, away
 
 
 def _copied(geometry: Geometry, faces: LiftedFaces, patches: Ints, isometry: Floats) -> FaceCopies:
