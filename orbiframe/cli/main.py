@@ -72,8 +72,9 @@ def _run(arguments: list[str]) -> int:
         say(f"the plugin '{plugin}' took {seconds:.1f} s to declare itself; it should import nothing heavy for that")
     quiet = "--quiet" in arguments or _mode(arguments) != "auto"
     try:
-        with patient(_command(arguments) or "orbiframe", quiet=quiet):
+        with patient(_command(arguments) or "orbiframe", quiet=quiet) as rest:
             args = parsed(arguments, registry)
+            args.progress.rest = rest
             with _told(args.progress, args.command):
                 return _status(args.run(args, registry), args, registry)
     except Exception as error:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext, redirect_stdout
 from typing import Any
 
@@ -18,22 +18,22 @@ _TICK = 1.0
 
 
 @contextmanager
-def patient(command: str, *, quiet: bool = False) -> Iterator[None]:
-    """Meanwhile whoever reads the standard error stream learns that the command is at work.
+def patient(command: str, *, quiet: bool = False) -> Iterator[Callable[[], None]]:
+    """Meanwhile whoever reads the standard error stream learns that the command is at work, until the yield is called.
 
     On a terminal the seconds are counted in the last line, behind the stage if there is one; what is written on the
     standard output meanwhile stands above that line. Elsewhere, as in a log, there is a line after a second and a half,
     and others after longer and longer times.
     """
-    if quiet:
-        yield
-        return
     done, line = threading.Event(), status_line(sys.stderr)
+    if quiet:
+        yield done.set
+        return
     thread = threading.Thread(target=_log if line is None else _count, args=(command, done, line), daemon=True)
     thread.start()
     try:
         with _above(line):
-            yield
+            yield done.set
     finally:
         done.set()
         thread.join()
@@ -63,3 +63,5 @@ def _count(command: str, done: threading.Event, line: StatusLine) -> None:
             line.show(own, since=start)
         if line.text == own or (line.text and now - line.written >= _FIRST):
             line.remark(f"{now - line.began:.0f} s")
+    if line.text == own:
+        line.wipe()

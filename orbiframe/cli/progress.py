@@ -23,6 +23,8 @@ MODES = ("auto", "json", "none")
 class Progress:
     """Shows how far the work is: in the last line of a terminal or notebook, as lines of JSON, or not at all.
 
+    A command that waits for its user from now on, as a server does, calls `rest()`: no seconds are counted then.
+
     Called as `progress(stage, seconds)`, with None at the beginning of a stage and its seconds at the end; `work` is
     for many fits. While a stage goes on, something is said every second or so. mode: "auto", shown on terminals and in
     notebooks only, "json" or "none". See docs/reference/cli.md for the lines of JSON.
@@ -37,6 +39,7 @@ class Progress:
         self._command = ""
         self._work_began, self._done_before = 0.0, 0
         self._ticker: Ticker | None = None
+        self.rest: Callable[[], None] = lambda: None
 
     @property
     def shown(self) -> bool:

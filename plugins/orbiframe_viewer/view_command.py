@@ -81,6 +81,7 @@ def _serve(args: argparse.Namespace, config: object, registry: Registry) -> int:
     try:
         session.finish(scenes_of(args.file, config, registry, told)[0])
         args.progress.close()
+        args.progress.rest()
         while True:
             time.sleep(3600)
     except KeyboardInterrupt:

@@ -78,6 +78,18 @@ def test_what_is_said_stands_above_the_line(monkeypatch):
     assert re.search(r"\r +\rorbiframe: look at it\n", terminal.getvalue())
 
 
+@pytest.mark.parametrize("stream", [io.StringIO, Terminal])
+def test_what_waits_for_its_user_is_not_counted(monkeypatch, stream):
+    monkeypatch.setattr(sys, "stderr", log := stream())
+    with patient("view") as rest:
+        said_within(log, r"view", 4.0)
+        rest()
+        time.sleep(0.2)
+        before = log.getvalue()
+        time.sleep(2.5)
+        assert log.getvalue() == before
+
+
 @pytest.mark.parametrize("quiet", [True, False])
 def test_what_is_quick_or_quiet_says_nothing(monkeypatch, quiet):
     monkeypatch.setattr(sys, "stderr", log := io.StringIO())
