@@ -38,10 +38,6 @@ def mapping_of(mesh: Polyhedron, config: Config, stages: Stages) -> Mapping:
             "creases (data.creases) are kept on closed meshes only so far; leave them out, or close the mesh in a mesh "
             "editor"
         )
-    if config.output.uv:
-        raise ConfigError(
-            "texture coordinates (output.uv, --uv) are made of closed surfaces only so far; leave them out"
-        )
     if config.boundary != "auto":
         return _closed(mesh, config.boundary, config, stages)  # type: ignore[arg-type]
     if surface_type(mesh).euler_characteristic == 0:

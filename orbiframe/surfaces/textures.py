@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from orbiframe.errors import UsageError
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -42,7 +43,8 @@ def texture_coordinates(surface: OrbifoldSurface, density: int = 1, *, bisected:
     X/H is cut open along edges, see `unrolled`, and drawn as everywhere: the plane E^2 as it is, H^2 in the conformal
     disc, the projective plane by equal areas about the middle. The sphere has meridians and parallels, first coordinate
     and second, from one end of the surface in space to the other; its first coordinate goes a little beyond 1 at the
-    cut, so that a texture that repeats has no seam. Raises UsageError where the triangles of the input were flipped
+    cut, so that a texture that repeats has no seam. A mesh with a boundary that is mapped to a part of the sphere is
+    drawn by equal areas, seen from where it is not. Raises UsageError where the triangles of the input were flipped
     for the map, and no density of the refined mesh is asked for.
     """
     triangulation = surface.triangulation
@@ -51,7 +53,10 @@ def texture_coordinates(surface: OrbifoldSurface, density: int = 1, *, bisected:
     geometry = triangulation.orbifold.geometry
     x = geometry.project(np.einsum("nc,nci->ni", barycentric, triangulation.lifts[face]))
     x = np.einsum("nij,nj->ni", placement[face], x)
-    if triangulation.orbifold.euler_characteristic == 2:
+    if triangulation.orbifold.euler_characteristic == 2 and triangulation.inside is not None:
+        opposite = geometry.carry(-_farthest_outside(triangulation, placement))
+        uv = _into_square(_drawn(geometry.curvature, geometry.act(geometry.inverse(opposite), x)))
+    elif triangulation.orbifold.euler_characteristic == 2:
         places = np.einsum("nc,nci->ni", barycentric, _in_space(triangulation)[face])
         shape = (-1, 3, 3)
         poles = _ends(triangulation, placement)
@@ -97,6 +102,10 @@ def _corners(surface: OrbifoldSurface, density: int, bisected: bool) -> tuple[In
     faces = (surface.triangulation.polyhedron if bisected else surface.refinement.coarse).face_count
     face = np.repeat(np.arange(faces), 3 * density**2)
     barycentric = np.tile(grid_of(density).reshape(-1, 3), (faces, 1))
+    inside = surface.triangulation.inside
+    if inside is not None:
+        own = np.repeat(inside if bisected else surface.own, 3 * density**2)
+        face, barycentric = face[own], barycentric[own]
     if bisected:
         return face, barycentric
     log = surface.refinement.log
@@ -117,6 +126,16 @@ def _input_triangles(surface: OrbifoldSurface) -> Ints:
 
 def _in_space(triangulation: Triangulation) -> Floats:
     return np.asarray(triangulation.polyhedron.vertices[triangulation.polyhedron.triangles])
+
+
+def _farthest_outside(triangulation: Triangulation, placement: Floats) -> Floats:
+    """The point of S^2 in the midst of a triangle beyond the boundary, as far as possible from those within it."""
+    centres = triangulation.orbifold.geometry.project(triangulation.lifts.sum(axis=1))
+    centres = np.einsum("fij,fj->fi", placement, centres)
+    assert triangulation.inside is not None
+    beyond = centres[~triangulation.inside]
+    away = cKDTree(centres[triangulation.inside]).query(beyond)[0]
+    return np.asarray(beyond[np.argmax(away)])
 
 
 def _ends(triangulation: Triangulation, placement: Floats) -> Floats:

@@ -40,6 +40,8 @@ def unrolled(triangulation: Triangulation, group: Ints | None = None) -> Unrolle
     is about that of Dirichlet, and its points lie no farther from the origin than its radius. group: (F,), triangles
     of a connected group, of the same number, are not cut apart. Of sixteen triangles the one is the middle from which
     the farthest is nearest. No two triangles overlap where those of the map do not: copies of X/H tile X.
+
+    Ways of a mesh with a boundary leave it only for the triangles that close it, which are joined to none.
     """
     geometry, p = triangulation.orbifold.geometry, triangulation.polyhedron
     here = np.arange(len(p.tail))
@@ -52,12 +54,14 @@ def unrolled(triangulation: Triangulation, group: Ints | None = None) -> Unrolle
     if group is not None:
         inside = group[a] == group[b]
         length = np.where(inside, _INSIDE * length[~inside].min(initial=np.inf, where=length[~inside] > 0), length)
+    own = np.isin(np.arange(p.face_count), triangulation.own_faces)
+    length = np.where(own[a] & own[b], length, length + length.sum())
     ways = _shortest_edges(a, b, length, p.face_count)
-    middle, before = _shortest_ways(a[ways], b[ways], length[ways], p.face_count)
+    middle, before = _shortest_ways(a[ways], b[ways], length[ways], own)
     ways = ways[before[b[ways]] == a[ways]]
     placement = _placed(geometry, before, b[ways], step[ways], middle)
     placement = geometry.inverse(geometry.carry(centre[middle])) @ placement
-    return Unrolled(placement, _joined(triangulation, placement))
+    return Unrolled(placement, own[a] & own[b] & _joined(triangulation, placement))
 
 
 def _shortest_edges(a: Ints, b: Ints, length: Floats, count: int) -> Ints:
@@ -66,11 +70,12 @@ def _shortest_edges(a: Ints, b: Ints, length: Floats, count: int) -> Ints:
     return order[np.flatnonzero(np.diff(a[order] * count + b[order], prepend=-1))]
 
 
-def _shortest_ways(a: Ints, b: Ints, length: Floats, count: int) -> tuple[int, Ints]:
+def _shortest_ways(a: Ints, b: Ints, length: Floats, own: NDArray[np.bool_]) -> tuple[int, Ints]:
     """The middle, and for every triangle the one before it on the shortest way from there (negative for the middle)."""
-    graph = coo_array((np.maximum(length, np.finfo(float).tiny), (a, b)), (count, count)).tocsr()
-    tried = np.unique(np.linspace(0, count - 1, min(_TRIED, count)).astype(np.intp))
-    middle = int(tried[np.argmin(dijkstra(graph, indices=tried).max(axis=1))])
+    graph = coo_array((np.maximum(length, np.finfo(float).tiny), (a, b)), (len(own), len(own))).tocsr()
+    faces = np.flatnonzero(own)
+    tried = faces[np.unique(np.linspace(0, len(faces) - 1, min(_TRIED, len(faces))).astype(np.intp))]
+    middle = int(tried[np.argmin(dijkstra(graph, indices=tried)[:, own].max(axis=1))])
     before = dijkstra(graph, indices=np.array([middle]), return_predecessors=True)[1]
     return middle, before[0].astype(np.intp)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -19,7 +20,14 @@ from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import area
 from orbiframe.meshes.surface_type import surface_type
 from orbiframe.meshes.unions import disjoint_union
-from orbiframe.surfaces import SurfaceForms, curved_mesh, fit_field, input_faces
+from orbiframe.surfaces import (
+    SurfaceForms,
+    curved_mesh,
+    fit_field,
+    input_faces,
+    texture_coordinates,
+    texture_distortion,
+)
 from orbiframe.surfaces.border import inside
 
 
@@ -167,8 +175,20 @@ def test_an_open_mesh_is_refused_unless_asked_for() -> None:
         Config.load(overrides=["mesh.boundary=lid"], registry=REGISTRY)
     with pytest.raises(ConfigError, match=r"creases .* are kept on closed meshes only so far"):
         fit(cylinder(), boundary="auto", data={"creases": 30}, basis="ps2", progress=False)
-    with pytest.raises(ConfigError, match=r"texture coordinates .* are made of closed surfaces only so far"):
-        fit(cylinder(), boundary="auto", output={"uv": True}, progress=False)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_textures_are_laid_out_without_a_fold(name: str) -> None:
+    """Parts of the sphere need no cut; a band is cut across once, which is a part of its length."""
+    surface = of(name).surface
+    mesh = replace(surface.tessellate(bisected=True), corner_uv=texture_coordinates(surface, bisected=True))
+    found = texture_distortion(mesh)
+    assert found.folded == 0
+    assert np.median(found.angle) < 1.3
+    assert (mesh.corner_uv.min(), mesh.corner_uv.max()) == pytest.approx((0, 1), abs=1e-12)
+    whole_sphere = surface.orbifold.euler_characteristic == 2
+    assert (found.cut == 0) == whole_sphere
+    assert found.cut < 0.05 * mesh.edge_count
 
 
 def test_a_closed_mesh_takes_no_notice() -> None:
