@@ -184,7 +184,7 @@ def test_textures_are_laid_out_without_a_fold(name: str) -> None:
     mesh = replace(surface.tessellate(bisected=True), corner_uv=texture_coordinates(surface, bisected=True))
     found = texture_distortion(mesh)
     assert found.folded == 0
-    assert np.median(found.angle) < 1.3
+    assert np.median(found.angle) < 1.5
     assert (mesh.corner_uv.min(), mesh.corner_uv.max()) == pytest.approx((0, 1), abs=1e-12)
     whole_sphere = surface.orbifold.euler_characteristic == 2
     assert (found.cut == 0) == whole_sphere
