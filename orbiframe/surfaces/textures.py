@@ -13,8 +13,8 @@ from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.subdivision import grid_of
 from orbiframe.surfaces.meridians import meridians_and_parallels
 from orbiframe.surfaces.surface import OrbifoldSurface
+from orbiframe.triangulations.cut_open import unrolled
 from orbiframe.triangulations.triangulation import Triangulation
-from orbiframe.triangulations.unrolled import unrolled
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

@@ -14,7 +14,7 @@ from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.unions import disjoint_union
 from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.surfaces.textures import texture_coordinates, texture_distortion
-from orbiframe.triangulations.unrolled import unrolled
+from orbiframe.triangulations.cut_open import unrolled
 
 NAMES = [
     "torus.off",

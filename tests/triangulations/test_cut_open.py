@@ -10,8 +10,8 @@ from fitted import fitted_linearly
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from orbiframe.triangulations.cut_open import Unrolled, unrolled
 from orbiframe.triangulations.triangulation import Triangulation
-from orbiframe.triangulations.unrolled import Unrolled, unrolled
 
 OPENED = ["torus.off", "klein_bottle.off", "projective_plane.off", "plate_genus2.off", "three_crosscaps.off"]
 NAMES = [*OPENED, "sphere.off", "plate_genus5.off"]
