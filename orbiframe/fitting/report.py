@@ -16,6 +16,7 @@ from orbiframe.fitting.config import Config
 from orbiframe.fitting.inspection import Inspection
 from orbiframe.fitting.mapping import Mapping
 from orbiframe.functions.basis import DifferentiableBasis
+from orbiframe.meshes.edge_paths import first_largest
 from orbiframe.meshes.face_diagonals import RULE, cut_into_triangles
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
@@ -153,7 +154,10 @@ def _worst(accuracy: Accuracy, surface: OrbifoldSurface) -> list[dict[str, Any]]
     both = {"mesh": accuracy.to_surface.places, "surface": accuracy.to_mesh.places}
     found = [(each, name) for name, places in both.items() for each in places]
     told: list[tuple[Place, str]] = []
-    for each, name in sorted(found, key=lambda pair: -pair[0].distance):
+    left = np.array([each.distance for each, _ in found])
+    for _ in found:
+        next_one = first_largest(left)
+        (each, name), left[next_one] = found[next_one], -1.0
         if all(math.dist(each.place, other.place) > APART for other, _ in told):
             told.append((each, name))
     return [

@@ -58,7 +58,7 @@ def test_options_that_name_one_file_are_refused(orbiframe, cube, tmp_path):
         (["{cube}", "sub/../{cube}", "--into", "{tmp}/out"], "2 of the meshes would become"),
         (["{cube}", "--into", "{tmp}/out", "--workers", "0"], "--workers 0"),
         (["{cube}", "--into", "{tmp}/out", "--set", "basis.siez=3"], "Did you mean 'size'?"),
-        (["{cube}", "--into", "{cube}/out"], "cannot be made"),
+        (["{cube}", "--into", "{cube}/out"], "cannot be written"),
     ],
 )
 def test_wrong_use_is_refused_before_any_work(orbiframe, cube, tmp_path, arguments, said):
