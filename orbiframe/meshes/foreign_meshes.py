@@ -6,6 +6,7 @@ None of these libraries is imported before a mesh is given back to it.
 from __future__ import annotations
 
 import importlib
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -43,18 +44,28 @@ def _of_faces(vertices: Any, faces: Any) -> Polyhedron:
     points = _points(vertices)
     if isinstance(faces, np.ndarray) and faces.dtype != object:
         return Polyhedron.from_faces(points, _whole(faces, 2, "faces"))
-    rows = [_whole(np.asarray(face), 1, f"face {number}") for number, face in enumerate(faces)]
+    if not isinstance(faces, Iterable):
+        raise TopologyError(f"faces: {type(faces).__name__}; they must be an array (F, n) or a list of faces")
+    rows = [_whole(_table(face, f"face {number}"), 1, f"face {number}") for number, face in enumerate(faces)]
     return Polyhedron.from_faces(points, [row.tolist() for row in rows])
 
 
 def _points(vertices: Any) -> Floats:
-    points = np.array(vertices, dtype=np.float64)
+    points = np.array(_table(vertices, "vertices", np.float64))
     if points.ndim != 2 or points.shape[1] != 3:
         raise TopologyError(f"vertices of the shape {points.shape}; they must be (V, 3), a row for each")
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(bad):
         raise TopologyError(f"vertex {bad[0]} is {points[bad[0]].tolist()}; coordinates must be finite")
     return points
+
+
+def _table(given: Any, name: str, kind: type[np.float64] | None = None) -> NDArray[Any]:
+    """What is given as an array of numbers."""
+    try:
+        return np.asarray(given, dtype=kind)
+    except (TypeError, ValueError) as error:
+        raise TopologyError(f"{name}: a {type(given).__name__} that is no table of numbers ({error})") from error
 
 
 def _whole(numbers: NDArray[Any], axes: int, name: str) -> Ints:
