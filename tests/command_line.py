@@ -45,7 +45,7 @@ def orbiframe(capsys, monkeypatch) -> Callable[..., Ran]:
 
     def run(*arguments: object) -> Ran:
         monkeypatch.setattr(program, "compilation_told", lambda **_: nullcontext())
-        monkeypatch.setattr(program, "patient", lambda *_, **__: nullcontext())
+        monkeypatch.setattr(program, "patient", lambda *_, **__: nullcontext(lambda: None))
         capsys.readouterr()
         status = program.main([str(argument) for argument in arguments])
         return Ran(status, *capsys.readouterr())

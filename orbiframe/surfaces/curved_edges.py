@@ -15,10 +15,12 @@ Floats = NDArray[np.float64]
 def edge_curves(surface: OrbifoldSurface, polyhedron: Polyhedron | None = None, *, steps: int = 8) -> Floats:
     """The images of the edges of a polyhedron on its surface as chains of points, (E, steps + 1, 3).
 
-    polyhedron: whose triangles are `surface.refinement.coarse`; without it the edges of these triangles.
+    polyhedron: whose triangles are `surface.refinement.coarse`; without it the edges of these triangles,
+    of a mesh with a boundary those of its own.
     """
     coarse = surface.refinement.coarse
-    halfedges = np.flatnonzero(coarse.representative)
+    own = surface.own[coarse.face]
+    halfedges = np.flatnonzero(own & (coarse.representative | ~own[coarse.twin]))
     if polyhedron is not None:
         halfedges = outline(polyhedron)[polyhedron.representative]
     face, corner = np.divmod(np.repeat(halfedges, steps + 1), 3)

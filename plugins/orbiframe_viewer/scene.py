@@ -19,6 +19,8 @@ Scene = dict[str, Any]
 
 FACES = 40_000
 _STEPS = 8  # pieces of an edge
+_PIECE, _MOST_PIECES = 0.1, 24  # the length in X of those of geodesics, and how many one has
+_ABOVE = 1.004  # edges on the sphere are drawn so far from its centre
 _MOST_EDGES = 20_000
 _MOST_FAR = 10_000  # edges of the copies of X/H round the one in the middle
 
@@ -28,10 +30,11 @@ def surface_scene(surface: OrbifoldSurface, polyhedron: Polyhedron | None, name:
     flat = surface.triangulation
     density = max(1, round(math.sqrt(faces / flat.polyhedron.face_count)))
     fine = surface.tessellation(density, bisected=True)
-    if fine.mesh.face_count != density**2 * flat.polyhedron.face_count:
+    count = len(flat.own_faces)
+    if fine.mesh.face_count != density**2 * count:
         density, fine = 1, surface.tessellation(1, bisected=True)
-    coarse = surface.refinement.coarse
-    given = polyhedron or coarse.with_vertices(surface.origin + surface.scale * coarse.vertices)
+    own = surface.own_mesh
+    given = polyhedron or own.with_vertices(surface.origin + surface.scale * own.vertices)
     values = shown_values(surface, fine)
     scene = _scene(fine.mesh, given, surface.origin, surface.scale, name)
     scene["values"] = [
@@ -44,7 +47,7 @@ def surface_scene(surface: OrbifoldSurface, polyhedron: Polyhedron | None, name:
     if given.edge_count <= _MOST_EDGES:
         curves = edge_curves(surface, polyhedron, steps=_STEPS)
         scene["edges"] = _pieces((curves - surface.origin) / surface.scale)
-    if fine.mesh.face_count == density**2 * flat.polyhedron.face_count:
+    if fine.mesh.face_count == density**2 * count:
         scene["xh"] = _xh(surface, polyhedron, density)
     return scene
 
@@ -93,15 +96,19 @@ def _xh(surface: OrbifoldSurface, polyhedron: Polyhedron | None, density: int) -
     flat, geometry = surface.triangulation, surface.orbifold.geometry
     grid = _grid(density)
     (lifts,) = Tessellation.of_triangles(flat).homes()
+    lifts = lifts[flat.own_faces]
     fine = geometry.project(np.einsum("kcb,fbi->fkci", grid, lifts)).reshape(-1, 3, 3)
     tiling = Tessellation.of_map(polyhedron or surface.refinement.coarse, surface.refinement, flat)
     homes = tiling.homes()
-    edges = np.concatenate([_geodesics(geometry, corners) for corners in homes])
+    if polyhedron is None:
+        homes = [homes[0][surface.own]]
+    edges = np.concatenate([_geodesics(geometry, corners, _count(geometry, homes)) for corners in homes])
+    lifted = _ABOVE if geometry.curvature > 0 else 1.0
     far = np.concatenate(list(_copies(surface, geometry, homes, len(edges))) or [edges[:0]])
     return {
         "geometry": geometry.name,
         "position": _packed(_placed(geometry, fine)),
-        "edges": _pieces(_placed(geometry, edges)),
+        "edges": _pieces(lifted * _placed(geometry, edges)),
         "far": _pieces(_placed(geometry, far)),
     }
 
@@ -128,9 +135,17 @@ def _copies(surface: OrbifoldSurface, geometry: Geometry, homes: list[Floats], e
             yield _geodesics(geometry, corners @ element.T)
 
 
-def _geodesics(geometry: Geometry, corners: Floats) -> Floats:
+def _count(geometry: Geometry, homes: list[Floats]) -> int:
+    """In how many pieces sides are drawn: on the sphere as many as keep the longest one outside of it."""
+    if geometry.curvature <= 0:
+        return 4
+    longest = max(float(geometry.distance(x, np.roll(x, -1, axis=1)).max(initial=0.0)) for x in homes)
+    return min(max(4, math.ceil(longest / _PIECE)), _MOST_PIECES)
+
+
+def _geodesics(geometry: Geometry, corners: Floats, count: int = 4) -> Floats:
     """The sides of polygons (F, n, 3) as chains of points of X."""
-    share = np.linspace(0, 1, 5)[:, None]
+    share = np.linspace(0, 1, count + 1)[:, None]
     start, end = corners[:, :, None], np.roll(corners, -1, axis=1)[:, :, None]
     return np.asarray(geometry.project((1 - share) * start + share * end).reshape(-1, len(share), 3))
 

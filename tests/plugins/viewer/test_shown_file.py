@@ -13,7 +13,7 @@ from orbiframe_viewer import view_command
 from orbiframe_viewer.scene import surface_scene
 from orbiframe_viewer.shown_file import scenes_of
 
-from orbiframe import Config, save_surface
+from orbiframe import Config, Polyhedron, fit, save_surface
 
 
 def numbers(text: str, kind=np.float32) -> np.ndarray:
@@ -40,6 +40,20 @@ def test_every_triangle_of_the_picture_has_its_place_on_the_surface_and_in_xh(na
         x = geometry.settle(chart[chosen, corner])
         points = surface.orbifold.settled(Points(np.zeros(len(chosen), dtype=np.intp), x))
         assert np.abs(surface.evaluate(points) - place[chosen, corner]).max() < 1e-3 * surface.scale
+
+
+def test_of_a_mesh_with_a_boundary_its_own_faces_are_shown():
+    """A box without its lid: nothing of what closes it for the map, in space, as input or in X/H."""
+    corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+    box = Polyhedron.from_faces(corners, [[0, 3, 2, 1], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
+    found = fit(box, size=60, fast=True, boundary="auto", progress=False)
+    for polyhedron, edges in ((found.input, 12), (None, 17)):
+        scene = surface_scene(found.surface, polyhedron, "box", faces=2000)
+        assert len(numbers(scene["edges"])) == edges * 8 * 2 * 3
+        place = numbers(scene["position"]).reshape(-1, 3) * scene["scale"] + scene["origin"]
+        assert place[:, 2].max() < 1.1
+        assert len(numbers(scene["xh"]["position"])) == 3 * len(numbers(scene["index"]))
+        assert numbers(scene["input"]["position"]).size == 10 * 9
 
 
 def test_a_saved_surface_is_shown_as_it_is(tmp_path):
