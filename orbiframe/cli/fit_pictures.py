@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.fitting.pipeline import Result
-from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.submesh import submesh
+from orbiframe.orbifolds.atlas import Points
 from orbiframe.surfaces.colour_scale import ColourScale
 from orbiframe.surfaces.curved_edges import edge_curves
 from orbiframe.surfaces.shaded_mesh import VIEW, shaded_picture
 from orbiframe.surfaces.surface import Tessellation
 from orbiframe.surfaces.values_to_show import ShownValues, shown_values
-from orbiframe.triangulations.tessellation import Tessellation as Tiling
+from orbiframe.triangulations.tessellation import Tessellation as Tiling, geodesic_sides
 
 Floats = NDArray[np.float64]
 
@@ -87,13 +88,12 @@ class FitPictures:
         """What lies near a place, seen along the normal there, coloured by the error."""
         radius = _CLOSE * self._surface.scale
         away = np.linalg.norm(fine.mesh.vertices - place, axis=1)
-        kept = np.flatnonzero((away < max(radius, 1.2 * float(away.min())))[fine.mesh.triangles].any(axis=1))
-        points, corners = np.unique(fine.mesh.triangles[kept], return_inverse=True)
-        part = Polyhedron.from_corners(fine.mesh.vertices[points], 3 * np.arange(len(kept) + 1), corners.ravel())
-        normals = None if fine.mesh.normals is None else fine.mesh.normals[points]
-        part = part.with_vertices(part.vertices, normals)
-        unit = Tessellation(part, type(fine.points)(fine.points.patch[points], fine.points.x[points]))
+        part, points = submesh(
+            fine.mesh, (away < max(radius, 1.2 * float(away.min())))[fine.mesh.triangles].any(axis=1)
+        )
+        unit = Tessellation(part, Points(fine.points.patch[points], fine.points.x[points]))
         colours = scale.colours(shown_values(self._surface, unit).error)
+        normals = part.normals
         view = VIEW if normals is None else tuple(normals[np.argmin(away[points])] + 0.25 * np.array(VIEW))
         near = [line for line in self._edges_of_input if np.linalg.norm(line - place, axis=1).min() < radius]
         return shaded_picture(part, width=_CLOSE_WIDTH, view=view, colours=colours, lines=near).png
@@ -112,11 +112,9 @@ class FitPictures:
     def tiling(self) -> str:
         """One lift of every face of the input to X, as SVG: in the disc, in the plane, or on the near half sphere."""
         tiling = Tiling.of_map(self._polyhedron, self._surface.refinement, self._surface.triangulation)
-        geometry, share = tiling.geometry, np.linspace(0, 1, 7)[:, None]
-        lines = []
+        geometry, lines = tiling.geometry, []
         for corners in tiling.homes():
-            start, end = corners[:, :, None], np.roll(corners, -1, axis=1)[:, :, None]
-            x = geometry.project((1 - share) * start + share * end).reshape(-1, len(share), 3)
+            x = geodesic_sides(geometry, corners, 6)
             seen = x[:, :, 0].min(axis=1) > 0 if geometry.curvature > 0 else slice(None)
             lines.append(x[seen][..., 1:] if geometry.curvature > 0 else geometry.to_chart("conformal", x[seen]))
         return _svg(np.concatenate(lines), rim=geometry.curvature != 0)

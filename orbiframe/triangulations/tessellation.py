@@ -128,6 +128,13 @@ class Tessellation:
             yield _copied(geometry, faces, patches[near], isometry[near])
 
 
+def geodesic_sides(geometry: Geometry, corners: Floats, pieces: int) -> Floats:
+    """The sides of polygons with corners (F, n, 3) in X as chains of points, (F n, pieces + 1, 3)."""
+    share = np.linspace(0, 1, pieces + 1)[:, None]
+    start, end = corners[:, :, None], np.roll(corners, -1, axis=1)[:, :, None]
+    return np.asarray(geometry.project((1 - share) * start + share * end).reshape(-1, pieces + 1, 3))
+
+
 def _lifted(polyhedron: Polyhedron, triangulation: Triangulation, steps: Floats, size: int) -> LiftedFaces:
     """The faces with so many corners; every corner is reached from the one before it."""
     halfedge = polyhedron.offsets[:-1][polyhedron.face_sizes == size][:, None] + np.arange(size)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from orbiframe import Geometry, OrbifoldSurface, Polyhedron
 from orbiframe.surfaces import edge_curves, shown_values
-from orbiframe.triangulations import Tessellation
+from orbiframe.triangulations import Tessellation, geodesic_sides
 
 Floats = NDArray[np.float64]
 Scene = dict[str, Any]
@@ -102,7 +102,7 @@ def _xh(surface: OrbifoldSurface, polyhedron: Polyhedron | None, density: int) -
     homes = tiling.homes()
     if polyhedron is None:
         homes = [homes[0][surface.own]]
-    edges = np.concatenate([_geodesics(geometry, corners, _count(geometry, homes)) for corners in homes])
+    edges = np.concatenate([geodesic_sides(geometry, corners, _count(geometry, homes)) for corners in homes])
     lifted = _ABOVE if geometry.curvature > 0 else 1.0
     far = np.concatenate(list(_copies(surface, geometry, homes, len(edges))) or [edges[:0]])
     return {
@@ -132,7 +132,7 @@ def _copies(surface: OrbifoldSurface, geometry: Geometry, homes: list[Floats], e
     away = geometry.distance(geometry.origin, elements[:, :, 0])
     for element in elements[np.argsort(away, kind="stable")][1 : count + 1]:
         for corners in homes:
-            yield _geodesics(geometry, corners @ element.T)
+            yield geodesic_sides(geometry, corners @ element.T, 4)
 
 
 def _count(geometry: Geometry, homes: list[Floats]) -> int:
@@ -141,13 +141,6 @@ def _count(geometry: Geometry, homes: list[Floats]) -> int:
         return 4
     longest = max(float(geometry.distance(x, np.roll(x, -1, axis=1)).max(initial=0.0)) for x in homes)
     return min(max(4, math.ceil(longest / _PIECE)), _MOST_PIECES)
-
-
-def _geodesics(geometry: Geometry, corners: Floats, count: int = 4) -> Floats:
-    """The sides of polygons (F, n, 3) as chains of points of X."""
-    share = np.linspace(0, 1, count + 1)[:, None]
-    start, end = corners[:, :, None], np.roll(corners, -1, axis=1)[:, :, None]
-    return np.asarray(geometry.project((1 - share) * start + share * end).reshape(-1, len(share), 3))
 
 
 def _placed(geometry: Geometry, x: Floats) -> Floats:
