@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.errors import ConfigError, MapError
-from orbiframe.fitting.config import Config
+from orbiframe.errors import ConfigError
+from orbiframe.fitting.config import Boundary, Config
 from orbiframe.fitting.mapping import Mapping
 from orbiframe.fitting.size import LEAST_SIZE
 from orbiframe.fitting.stages import Stages
@@ -15,20 +15,16 @@ from orbiframe.meshes.face_diagonals import cut_into_triangles, triangulated
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import area
 from orbiframe.meshes.surface_type import surface_type
-from orbiframe.triangulations.lost_digits import crowding_of
 
 # A collar is as wide as so many functions of mean spacing.
 _FUNCTIONS_ACROSS = 6.0
-# A collar that costs more digits than this closes a long tube, which the double maps with all of them.
-_MOST_DIGITS = 10.0
 
 
 def mapping_of(mesh: Polyhedron, config: Config, stages: Stages) -> Mapping:
     """The maps of a mesh of unit size; one with a boundary is closed first, as the configuration says.
 
-    "auto" takes the double of an annulus or a Möbius band, which is flat, else the collar; and the double where the map
-    of that fails, or loses many digits as those of long tubes do. Raises TopologyError for boundary loops that cannot
-    be closed.
+    "auto" takes the double of an annulus or a Möbius band, which is flat, else the collar. Raises TopologyError for
+    boundary loops that cannot be closed.
     """
     if (mesh.twin >= 0).all():
         triangles = stages("triangles", triangulated, mesh)
@@ -38,21 +34,14 @@ def mapping_of(mesh: Polyhedron, config: Config, stages: Stages) -> Mapping:
             "creases (data.creases) are kept on closed meshes only so far; leave them out, or close the mesh in a mesh "
             "editor"
         )
-    if config.boundary != "auto":
-        return _closed(mesh, config.boundary, config, stages)  # type: ignore[arg-type]
-    if surface_type(mesh).euler_characteristic == 0:
-        return _closed(mesh, "double", config, stages)
-    collar = _closed(mesh, "collar", config, stages)
-    return collar if _is_good(collar) else _closed(mesh, "double", config, stages)
+    return _closed(mesh, _way(mesh, config.boundary), config, stages)
 
 
-def _is_good(mapping: Mapping) -> bool:
-    """Whether the mesh with a collar has a map of enough digits."""
-    try:
-        mapped = mapping.for_size(_size(mapping.config))
-    except MapError:
-        return False
-    return crowding_of(mapped.triangulation).digits_lost <= _MOST_DIGITS
+def _way(mesh: Polyhedron, boundary: Boundary) -> Closing:
+    """How the mesh is closed; a mesh with a boundary is refused before where the configuration says so."""
+    if boundary in ("cap", "collar", "double"):
+        return boundary
+    return "double" if surface_type(mesh).euler_characteristic == 0 else "collar"
 
 
 def _size(config: Config) -> int:

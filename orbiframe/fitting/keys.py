@@ -45,8 +45,8 @@ SELECTOR_MEANINGS = {
 _BOUNDARY_MEANING = (
     "what to do with a mesh that has a boundary: error, refuse it; else how it is closed for the map, while the "
     "surface ends where the mesh ends: cap, over each loop; collar, with a strip about it first, which corners need; "
-    "double, with a second copy of mesh and strip, for long tubes; auto takes double for annuli and Möbius bands and "
-    "where collar loses many digits, else collar"
+    "double, with a second copy of mesh and strip, for long tubes; auto takes double for annuli and Möbius bands, "
+    "else collar"
 )
 _RESULT_MEANINGS = {
     "data.means": "what the mesh means: facets, the polyhedron is the truth; smooth, its vertices lie on a smooth"

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
-from orbiframe.planes.geometry import Geometry
 from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
@@ -59,7 +58,7 @@ def unrolled(triangulation: Triangulation, group: Ints | None = None) -> Unrolle
     ways = _shortest_edges(a, b, length, p.face_count)
     middle, before = _shortest_ways(a[ways], b[ways], length[ways], own)
     ways = ways[before[b[ways]] == a[ways]]
-    placement = _placed(geometry, before, b[ways], step[ways], middle)
+    placement = _placed(before, b[ways], step[ways], middle)
     placement = geometry.inverse(geometry.carry(centre[middle])) @ placement
     return Unrolled(placement, own[a] & own[b] & _joined(triangulation, placement))
 
@@ -80,7 +79,7 @@ def _shortest_ways(a: Ints, b: Ints, length: Floats, own: NDArray[np.bool_]) -> 
     return middle, before[0].astype(np.intp)
 
 
-def _placed(geometry: Geometry, before: Ints, after: Ints, step: Floats, middle: int) -> Floats:
+def _placed(before: Ints, after: Ints, step: Floats, middle: int) -> Floats:
     """The placement of every triangle in the frame of the middle one, level by level of the tree of shortest ways.
 
     step: (n, 3, 3), from the frame of the triangle after[k] to that of the one before it.
@@ -94,7 +93,7 @@ def _placed(geometry: Geometry, before: Ints, after: Ints, step: Floats, middle:
     while len(level):
         level = np.concatenate([order[start[k] : start[k + 1]] for k in level.tolist()])
         if len(level):
-            placement[level] = geometry.nearest_isometry(placement[before[level]] @ steps[level])
+            placement[level] = placement[before[level]] @ steps[level]
     return placement
 
 

@@ -76,8 +76,9 @@ def test_places_of_the_largest_errors_are_apart_and_in_order(orbiframe, cube, tm
     distance = json.loads(path.read_text())["distance"]
     worst, diagonal = distance["worst"], np.sqrt(3)
     assert 1 < len(worst) <= 6
-    assert [each["distance"] for each in worst] == sorted((each["distance"] for each in worst), reverse=True)
-    assert worst[0]["distance"] == max(distance[key]["max"] for key in ("mesh_to_surface", "surface_to_mesh"))
+    assert np.diff([each["distance"] for each in worst]).max() < 1e-9  # equal ones are in the order of the mesh
+    largest = max(distance[key]["max"] for key in ("mesh_to_surface", "surface_to_mesh"))
+    assert worst[0]["distance"] == pytest.approx(largest, rel=1e-9)
     places = np.array([each["place"] for each in worst])
     away = np.linalg.norm(places[:, None] - places, axis=2)
     assert away[~np.eye(len(places), dtype=bool)].min() > 0.08 * diagonal

@@ -29,6 +29,7 @@ from orbiframe.surfaces import (
     texture_distortion,
 )
 from orbiframe.surfaces.border import inside
+from orbiframe.triangulations import unrolled
 
 
 @cache
@@ -189,6 +190,10 @@ def test_textures_are_laid_out_without_a_fold(name: str) -> None:
     whole_sphere = surface.orbifold.euler_characteristic == 2
     assert (found.cut == 0) == whole_sphere
     assert found.cut < 0.05 * mesh.edge_count
+    map = surface.triangulation
+    joined, face = unrolled(map).joined, map.polyhedron.face
+    assert map.inside[face[joined]].all()
+    assert map.inside[face[map.polyhedron.twin[joined]]].all()
 
 
 def test_a_closed_mesh_takes_no_notice() -> None:

@@ -54,6 +54,9 @@ def test_of_a_mesh_with_a_boundary_its_own_faces_are_shown():
         assert place[:, 2].max() < 1.1
         assert len(numbers(scene["xh"]["position"])) == 3 * len(numbers(scene["index"]))
         assert numbers(scene["input"]["position"]).size == 10 * 9
+        sides = {True: 20, False: 30}[polyhedron is not None]  # of five squares, or of ten triangles
+        pieces, rest = divmod(numbers(scene["xh"]["edges"]).size, 6 * sides)
+        assert (4 <= pieces <= 24, rest) == (True, 0)
 
 
 def test_a_saved_surface_is_shown_as_it_is(tmp_path):
