@@ -277,7 +277,12 @@ def _step(table: str, given: Mapping[str, Any], places: Mapping[str, str]) -> St
 
 
 def _require_option_of_kind(table: str, step: Step, registry: Registry, places: Mapping[str, str]) -> None:
-    known = {STEPS[table][1]: None, **({} if step.name in ("mesh", "none") else _options_of_kind(step.kind, registry))}
+    own = {"boundary": None} if table == "mesh" else {}
+    known = {
+        STEPS[table][1]: None,
+        **own,
+        **({} if step.name in ("mesh", "none") else _options_of_kind(step.kind, registry)),
+    }
     for key in step.options:
         require_known(key, known, table, places)
 

@@ -68,7 +68,8 @@ def _serve(args: argparse.Namespace, config: object, registry: Registry) -> int:
     try:
         server = serve(session, args.port)
     except (OSError, OverflowError) as error:
-        raise UsageError(f"--port {args.port} cannot be served: {error}; leave it out for one that is free") from error
+        why = str(error).rstrip(".")
+        raise UsageError(f"--port {args.port} cannot be served: {why}; leave it out for one that is free") from error
     where = address(server, session)
     print(f"{where}\nthe page is served until Ctrl-C", flush=True)
     if not args.no_browser:

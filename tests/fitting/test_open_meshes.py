@@ -174,6 +174,8 @@ def test_an_open_mesh_is_refused_unless_asked_for() -> None:
         fit(cylinder(), size=100, progress=False)
     with pytest.raises(ConfigError, match=r"mesh.boundary = 'lid': input should be 'error', 'cap', 'collar'"):
         Config.load(overrides=["mesh.boundary=lid"], registry=REGISTRY)
+    with pytest.raises(ConfigError, match=r"no option 'boundry'; allowed: .*boundary.* Did you mean 'boundary'"):
+        Config.load(overrides=["mesh.boundry=auto"], registry=REGISTRY)
     with pytest.raises(ConfigError, match=r"creases .* are kept on closed meshes only so far"):
         fit(cylinder(), boundary="auto", data={"creases": 30}, basis="ps2", progress=False)
 
