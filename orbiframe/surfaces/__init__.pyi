@@ -7,12 +7,16 @@ from .curved_triangles import (
     joined_meshes as joined_meshes,
     node_exponents as node_exponents,
 )
+from .edge_form import edge_form as edge_form
 from .equations import heat as heat, poisson as poisson
 from .exact_patches import patches_of as patches_of
 from .field import Field as Field, fit_field as fit_field
 from .geodesic_faces import GeodesicFaces as GeodesicFaces, input_faces as input_faces
 from .gram_schmidt import Orthonormal as Orthonormal, orthonormal as orthonormal
+from .harmonic_forms import HarmonicForms as HarmonicForms
+from .hodge import Decomposition as Decomposition, Hodge as Hodge
 from .nearest import nearest_points as nearest_points
+from .period_matrix import PeriodMatrix as PeriodMatrix, period_matrix as period_matrix
 from .periodic_patch import PeriodicPatch as PeriodicPatch
 from .principal import (
     PrincipalCurvature as PrincipalCurvature,

@@ -1,5 +1,10 @@
 """The public names of orbiframe.triangulations, each with the module it lives in."""
 
+from .cocycles import (
+    cohomology as cohomology,
+    intersections as intersections,
+    refined_jumps as refined_jumps,
+)
 from .cut_open import Unrolled as Unrolled, unrolled as unrolled
 from .geodesic_triangulation import GeodesicTriangulation as GeodesicTriangulation
 from .local_girth import Girth as Girth, girth as girth, site_density as site_density, site_lengths as site_lengths

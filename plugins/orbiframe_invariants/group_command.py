@@ -35,6 +35,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--prove", action="store_true", help="prove the relations of the regular polygon exactly, without rounding")
     add("--systole", action="store_true", help="the shortest closed geodesic, and how many there are")
     add("--spectrum", metavar="N", type=int, help="the N smallest eigenvalues of the Laplacian, with multiplicities")
+    add("--periods", action="store_true", help="the period matrix of an orientable surface, in its standard letters")
     add("--matrices", action="store_true", help="the matrices of the side pairings, and of the loops along the sides")
     add("--draw", metavar="FILE", type=Path, help="a picture of the polygon and its tiles, .svg, .png or .pdf")
     add("--model", metavar="NAME", help="of the picture: projective, conformal (the default), hyperboloid or sphere")
@@ -64,7 +65,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
         found = _described(word)
         if args.prove:
             found["proof"] = _proof(word, args.polygon)
-        if args.systole or args.spectrum or args.draw or args.matrices:
+        if args.systole or args.spectrum or args.draw or args.matrices or args.periods:
             found.update(_computed(args, _group(word, args.polygon, registry), registry))
     print(json.dumps(found) if args.json else "\n".join(group_lines(found)))
     return 0
@@ -152,6 +153,8 @@ def _computed(args: argparse.Namespace, group: Group, registry: Registry) -> dic
 
         shortest = systole(group)
         found["systole"] = {"length": shortest.length, "multiplicity": shortest.multiplicity}
+    if args.periods:
+        found["periods"] = _periods(group, registry)
     if args.matrices:
         from orbiframe_invariants.generator_matrices import generator_matrices
 
@@ -172,6 +175,15 @@ def _computed(args: argparse.Namespace, group: Group, registry: Registry) -> dic
             found["function"] = {"number": args.function}
         _draw(args, group, registry, found.get("function", {}))
     return found
+
+
+def _periods(group: Group, registry: Registry) -> dict[str, Any]:
+    """The period matrix, rows of real and imaginary parts, and a bound of its error."""
+    from orbiframe_invariants.periods import group_periods
+
+    found = group_periods(group, _polynomials(registry))
+    rows = [[[float(z.real) + 0.0, float(z.imag)] for z in row] for row in found.matrix]
+    return {"matrix": rows, "error": found.error, "degree": found.forms.basis.degree}
 
 
 def _listed(values: list[Eigenvalue]) -> list[dict[str, Any]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from orbiframe_invariants.symbol_description import symbol_rows
@@ -43,6 +44,11 @@ def _computed_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
                 ("", f"    {lines[1]}"),
                 ("", f"    {lines[2]}"),
             ]
+    if periods := found.get("periods"):
+        digits = min(12, max(1, int(-math.log10(periods["error"] + 1e-15))))
+        lines = ["  ".join(_complex(*pair, digits) for pair in row) for row in periods["matrix"]]
+        rows += [("periods" if k == 0 else "", line) for k, line in enumerate(lines)]
+        rows.append(("", f"within {periods['error']:.0e}"))
     if shortest := found.get("systole"):
         rows.append(("systole", f"{shortest['length']:.12g}, {shortest['multiplicity']} closed geodesics"))
     rows += [
@@ -54,6 +60,12 @@ def _computed_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
     if "picture" in found:
         rows.append(("picture", found["picture"]))
     return rows
+
+
+def _complex(real: float, imaginary: float, digits: int) -> str:
+    """A complex number with as many digits after the point as are right."""
+    sign = "-" if round(imaginary, digits) < 0 else "+"
+    return f"{round(real, digits) + 0.0:.{digits}g} {sign} {abs(round(imaginary, digits)):.{digits}g}i"
 
 
 def _matrix_rows(kind: str, matrices: dict[str, list[list[float]]]) -> list[tuple[str, str]]:
