@@ -31,7 +31,9 @@ def edge_form(surface: OrbifoldSurface, integrals: ArrayLike) -> Callable[[Point
             f"the integrals have the shape {values.shape}; {len(mesh.tail)} finite numbers are needed, one for each "
             "halfedge of surface.triangulation.polyhedron"
         )
-    wrong = np.flatnonzero(np.abs(values[mesh.twin] + np.where(mesh.same, -1, 1) * values) > 1e-9 * np.abs(values).max())
+    wrong = np.flatnonzero(
+        np.abs(values[mesh.twin] + np.where(mesh.same, -1, 1) * values) > 1e-9 * np.abs(values).max()
+    )
     if len(wrong):
         raise FitError(
             f"halfedge {wrong[0]} has the integral {values[wrong[0]]:.6g} and its twin {values[mesh.twin[wrong[0]]]:.6g}; "

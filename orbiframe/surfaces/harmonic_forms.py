@@ -76,9 +76,7 @@ class HarmonicForms:
         return cls._least(basis, space, SurfaceForms.of(surface, space, on_x=on_x).stiffness, jumps)
 
     @classmethod
-    def _least(
-        cls, basis: ElementBasis, space: ElementBasis, energy: csr_array, jumps: Ints | None
-    ) -> HarmonicForms:
+    def _least(cls, basis: ElementBasis, space: ElementBasis, energy: csr_array, jumps: Ints | None) -> HarmonicForms:
         """The multivalued functions of least energy, which is given on all branches."""
         chosen = cohomology(basis.domain) if jumps is None else np.asarray(jumps, dtype=np.intp)
         require_cocycles(basis.domain, chosen)

@@ -25,7 +25,9 @@ def test_a_form_in_any_basis_becomes_the_standard_one(genus, seed):
     assert abs(round(np.linalg.det(basis))) == 1
 
 
-@pytest.mark.parametrize("form", [np.zeros((2, 2), int), 2 * standard_form(1), np.zeros((3, 3), int), np.eye(2, dtype=int)])
+@pytest.mark.parametrize(
+    "form", [np.zeros((2, 2), int), 2 * standard_form(1), np.zeros((3, 3), int), np.eye(2, dtype=int)]
+)
 def test_other_forms_are_refused(form):
     with pytest.raises(TopologyError, match="symplectic"):
         symplectic_basis(form)
