@@ -1,5 +1,6 @@
 """The public names of orbiframe.surfaces, each with the module it lives in."""
 
+from .complex_structure import PeriodMatrix as PeriodMatrix, period_matrix as period_matrix
 from .curved_edges import edge_curves as edge_curves
 from .curved_triangles import (
     CurvedMesh as CurvedMesh,
@@ -7,7 +8,6 @@ from .curved_triangles import (
     joined_meshes as joined_meshes,
     node_exponents as node_exponents,
 )
-from .edge_form import edge_form as edge_form
 from .equations import heat as heat, poisson as poisson
 from .exact_patches import patches_of as patches_of
 from .field import Field as Field, fit_field as fit_field
@@ -16,7 +16,6 @@ from .gram_schmidt import Orthonormal as Orthonormal, orthonormal as orthonormal
 from .harmonic_forms import HarmonicForms as HarmonicForms
 from .hodge import Decomposition as Decomposition, Hodge as Hodge
 from .nearest import nearest_points as nearest_points
-from .period_matrix import PeriodMatrix as PeriodMatrix, period_matrix as period_matrix
 from .periodic_patch import PeriodicPatch as PeriodicPatch
 from .principal import (
     PrincipalCurvature as PrincipalCurvature,
@@ -33,3 +32,4 @@ from .textures import (
 )
 from .triangle_patches import TrianglePatches as TrianglePatches
 from .values_to_show import ShownValues as ShownValues, shown_values as shown_values
+from .whitney_form import edge_form as edge_form

@@ -30,7 +30,7 @@ FUNCTIONS = "bernstein"
 
 @dataclass(frozen=True, eq=False)
 class HarmonicForms:
-    """b harmonic 1-forms du, each the differential of a multivalued function u of least energy among those of its class.
+    """b harmonic 1-forms du, each that of a multivalued function u of least energy among those of its class.
 
     basis: the continuous functions that were added; branches: polynomials on every triangle for itself; coefficients:
     (F n, b), the multivalued functions in `branches`; jumps: (b, 3 F), how far their branches are apart across the

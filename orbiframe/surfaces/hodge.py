@@ -29,8 +29,8 @@ _DEGREE = 6
 class Decomposition(NamedTuple):
     """The parts of a 1-form: d alpha + * d beta + a harmonic form + what the functions miss.
 
-    exact: (size,), the coefficients of alpha, which is known up to a constant; coexact: those of beta, None on a nonorientable
-    surface, where * needs an orientation and this part is in the rest; harmonic: (b,), the factors of the harmonic
+    exact: (size,), the coefficients of alpha, which is known up to a constant; coexact: those of beta, None on a
+    nonorientable surface, where * needs an orientation and this part is in the rest; harmonic: (b,), the factors of the harmonic
     forms; squares: the squared norms of the parts, "exact", "coexact", "harmonic" and "rest", which add up to that of
     the form.
     """
@@ -91,7 +91,8 @@ class Hodge:
         if self.surface.orbifold.orientable:
             coexact = -self._solved(self.turned(form))
             parts["coexact"] = self.turned(self._gradients(coexact))
-        harmonic = np.linalg.solve(self.harmonic.gram, [self.product(form, each) for each in self._harmonic])
+        products = [self.product(form, each) for each in self._harmonic]
+        harmonic = np.asarray(np.linalg.solve(self.harmonic.gram, products), dtype=np.float64)
         parts["harmonic"] = np.einsum("b,bni->ni", harmonic, self._harmonic)
         squares = {"coexact": 0.0} | {name: self.product(part, part) for name, part in parts.items()}
         rest = form - sum(parts.values())
@@ -122,7 +123,7 @@ class Hodge:
             raise FitError(f"the 1-form is {found[bad].tolist()} at point {bad}; its values must be finite")
         if found.shape[1] == 2:
             return found
-        return np.einsum("nki,ni->nk", self.surface.jet(self.points).first, found)
+        return np.asarray(np.einsum("nki,ni->nk", self.surface.jet(self.points).first, found))
 
     def _solved(self, form: Floats) -> Floats:
         """The function whose differential is nearest to a 1-form."""

@@ -29,7 +29,8 @@ def cohomology(domain: GeodesicTriangulation) -> Ints:
     ends = domain.vertex.ravel()[np.stack([first, first - first % 3 + (first + 1) % 3])]
     rest = np.flatnonzero(~cotree)
     tree = joining_edges(domain.vertex_count, ends[0, rest], ends[1, rest])
-    return np.where(domain.reference, 1, -1) * _closed(domain, rest[tree], rest[~tree])[:, domain.edge]
+    closed = _closed(domain, rest[tree], rest[~tree])
+    return np.asarray(np.where(domain.reference, 1, -1) * closed[:, domain.edge])
 
 
 def _closed(domain: GeodesicTriangulation, tree: Ints, free: Ints) -> Ints:

@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import breadth_first_order
 Ints = NDArray[np.intp]
 
 
-def potentials(roots: Ints, tail: Ints, head: Ints, difference: Ints) -> Ints:
+def potentials(roots: NDArray[np.bool_], tail: Ints, head: Ints, difference: Ints) -> Ints:
     """The numbers x (count, k) with x[tail] = x[head] + difference along a tree, and 0 at the roots.
 
     roots: (count,) bool, one node of every component; tail, head: (m,), the edges; difference: (m, k), consistent round

@@ -46,7 +46,7 @@ def _computed_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
             ]
     if periods := found.get("periods"):
         digits = min(12, max(1, int(-math.log10(periods["error"] + 1e-15))))
-        lines = ["  ".join(_complex(*pair, digits) for pair in row) for row in periods["matrix"]]
+        lines = ["  ".join(_complex(pair, digits) for pair in row) for row in periods["matrix"]]
         rows += [("periods" if k == 0 else "", line) for k, line in enumerate(lines)]
         rows.append(("", f"within {periods['error']:.0e}"))
     if shortest := found.get("systole"):
@@ -62,8 +62,9 @@ def _computed_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
     return rows
 
 
-def _complex(real: float, imaginary: float, digits: int) -> str:
+def _complex(pair: list[float], digits: int) -> str:
     """A complex number with as many digits after the point as are right."""
+    real, imaginary = pair
     sign = "-" if round(imaginary, digits) < 0 else "+"
     return f"{round(real, digits) + 0.0:.{digits}g} {sign} {abs(round(imaginary, digits)):.{digits}g}i"
 

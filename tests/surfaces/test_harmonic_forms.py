@@ -11,10 +11,10 @@ from fitted import DATASETS, REGISTRY, config, mesh_of
 from orbiframe import fit
 from orbiframe.errors import FitError, TopologyError
 from orbiframe.orbifolds.atlas import Points
-from orbiframe.surfaces.edge_form import edge_form
+from orbiframe.surfaces.complex_structure import period_matrix
 from orbiframe.surfaces.harmonic_forms import HarmonicForms, continuous_functions
 from orbiframe.surfaces.hodge import Hodge
-from orbiframe.surfaces.period_matrix import period_matrix
+from orbiframe.surfaces.whitney_form import edge_form
 
 
 @cache
@@ -67,7 +67,7 @@ def tangential(vectors: np.ndarray) -> np.ndarray:
 
 
 def test_parts_of_a_field_that_is_made_of_them():
-    """The slope of z, the slope of x turned about the normal, and twice the differential of the angle round the axis."""
+    """The slope of z, that of x turned about the normal, and twice the differential of the angle round the axis."""
     x = torus().evaluate(hodge().points)
     normal = torus().normals(hodge().points)
     round_axis = np.stack([-x[:, 1], x[:, 0], 0 * x[:, 0]], axis=1) / (x[:, 0] ** 2 + x[:, 1] ** 2)[:, None]

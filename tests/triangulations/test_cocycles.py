@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fitted import REGISTRY
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from orbiframe.delaunay.polygon_fan import polygon_triangulation
 from orbiframe.errors import TopologyError

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from orbiframe.errors import TopologyError
 from orbiframe.triangulations.symplectic_basis import standard_form, symplectic_basis
@@ -25,9 +24,10 @@ def test_a_form_in_any_basis_becomes_the_standard_one(genus, seed):
     assert abs(round(np.linalg.det(basis))) == 1
 
 
-@pytest.mark.parametrize(
-    "form", [np.zeros((2, 2), int), 2 * standard_form(1), np.zeros((3, 3), int), np.eye(2, dtype=int)]
-)
+OTHERS = np.zeros((2, 2), int), 2 * standard_form(1), np.zeros((3, 3), int), np.eye(2, dtype=int)
+
+
+@pytest.mark.parametrize("form", OTHERS)
 def test_other_forms_are_refused(form):
     with pytest.raises(TopologyError, match="symplectic"):
         symplectic_basis(form)

@@ -14,8 +14,8 @@ from orbiframe.delaunay.polygon_fan import polygon_triangulation
 from orbiframe.errors import TopologyError
 from orbiframe.groups.fundamental_polygon import FundamentalPolygon, regular_polygon
 from orbiframe.groups.polygon_group import PolygonGroup
+from orbiframe.surfaces.complex_structure import period_matrix
 from orbiframe.surfaces.harmonic_forms import HarmonicForms
-from orbiframe.surfaces.period_matrix import period_matrix
 from orbiframe.triangulations.cocycles import refined_jumps, require_cocycles
 from orbiframe.triangulations.symplectic_basis import standard_form
 from orbiframe.words.word import Word

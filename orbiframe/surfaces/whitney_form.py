@@ -31,12 +31,11 @@ def edge_form(surface: OrbifoldSurface, integrals: ArrayLike) -> Callable[[Point
             f"the integrals have the shape {values.shape}; {len(mesh.tail)} finite numbers are needed, one for each "
             "halfedge of surface.triangulation.polyhedron"
         )
-    wrong = np.flatnonzero(
-        np.abs(values[mesh.twin] + np.where(mesh.same, -1, 1) * values) > 1e-9 * np.abs(values).max()
-    )
+    other = values[mesh.twin]
+    wrong = np.flatnonzero(np.abs(other + np.where(mesh.same, -1, 1) * values) > 1e-9 * np.abs(values).max())
     if len(wrong):
         raise FitError(
-            f"halfedge {wrong[0]} has the integral {values[wrong[0]]:.6g} and its twin {values[mesh.twin[wrong[0]]]:.6g}; "
+            f"halfedge {wrong[0]} has the integral {values[wrong[0]]:.6g} and its twin {other[wrong[0]]:.6g}; "
             "along one edge they must be opposite"
         )
     domain = GeodesicTriangulation.of_map(surface.triangulation)
