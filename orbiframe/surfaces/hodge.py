@@ -30,9 +30,9 @@ class Decomposition(NamedTuple):
     """The parts of a 1-form: d alpha + * d beta + a harmonic form + what the functions miss.
 
     exact: (size,), the coefficients of alpha, which is known up to a constant; coexact: those of beta, None on a
-    nonorientable surface, where * needs an orientation and this part is in the rest; harmonic: (b,), the factors of the harmonic
-    forms; squares: the squared norms of the parts, "exact", "coexact", "harmonic" and "rest", which add up to that of
-    the form.
+    nonorientable surface, where * needs an orientation and this part is in the rest; harmonic: (b,), the factors of the
+    harmonic forms; squares: the squared norms of the parts, "exact", "coexact", "harmonic" and "rest", which add up to
+    that of the form.
     """
 
     exact: Floats

@@ -45,10 +45,10 @@ def _closed(domain: GeodesicTriangulation, tree: Ints, free: Ints) -> Ints:
     # On nonorientable surfaces the equation of the last vertex is one of its own.
     left = (sums[[0]] @ found.T).ravel()
     if not left.any():
-        return found
+        return np.asarray(found)
     pivot = np.flatnonzero(np.abs(left) == np.abs(left[left != 0]).min())[0]
     others = np.delete(np.arange(len(free)), pivot)
-    return found[others] - (left[others] // left[pivot])[:, None] * found[pivot]
+    return np.asarray(found[others] - (left[others] // left[pivot])[:, None] * found[pivot])
 
 
 def vertex_sums(domain: GeodesicTriangulation) -> csr_array:
