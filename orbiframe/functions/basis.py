@@ -47,7 +47,7 @@ class Basis(ABC):
 
     def values(self, points: Points, coefficients: Floats) -> Floats:
         """The values (n, q) of q combinations of the functions, with coefficients (size, q), at n points."""
-        parts = [self.design_matrix(part) @ coefficients for part in _chunks(points)]
+        parts = [self.design_matrix(part) @ coefficients for part in chunks_of(points)]
         return np.concatenate(parts)
 
 
@@ -70,7 +70,7 @@ class DifferentiableBasis(Basis):
     def jets(self, points: Points, coefficients: Floats, order: int) -> Floats:
         """The same for q combinations of the functions, with coefficients (size, q): (1, 3, 6 or 12, n, q)."""
         parts = [
-            np.stack([matrix @ coefficients for matrix in self.jet_matrices(part, order)]) for part in _chunks(points)
+            np.stack([matrix @ coefficients for matrix in self.jet_matrices(part, order)]) for part in chunks_of(points)
         ]
         return np.concatenate(parts, axis=1)
 
@@ -91,7 +91,7 @@ def lifted(basis: Basis, coefficients: Floats) -> Callable[[Floats], Floats]:
     return values
 
 
-def _chunks(points: Points) -> list[Points]:
+def chunks_of(points: Points) -> list[Points]:
     """The points in parts that bound the memory of design matrices; at least one."""
     bounds = range(0, max(len(points.patch), 1), _CHUNK)
     return [Points(points.patch[b : b + _CHUNK], points.x[b : b + _CHUNK]) for b in bounds]

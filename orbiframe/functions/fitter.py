@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from orbiframe.functions.basis import Basis
 from orbiframe.functions.samples import Samples
@@ -32,12 +34,19 @@ class ValidatedFit(NamedTuple):
 
     coefficients: (size, d); fairing: how much smoothing was taken; freedom: how many numbers the fit takes from the
     data, between 1 and the number of functions; left_out: (n, d), what each value is beyond the fit of all others.
+
+    deviation: takes rows, sparse (k, size), to the standard errors (k, d) of what they find in the fit; noise: (d,),
+    the standard deviation of the values as the fit finds it; trust: (n,), how far each sample was believed, from 1 to 0
+    for an outlier, nan without weight. None where the fitter does not tell.
     """
 
     coefficients: Floats
     fairing: float
     freedom: float
     left_out: Floats
+    deviation: Callable[[csr_array], Floats] | None = None
+    noise: Floats | None = None
+    trust: Floats | None = None
 
 
 class ValidatedFitter(Fitter):

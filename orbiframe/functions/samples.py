@@ -43,8 +43,12 @@ class Samples:
     normals: (n, 3), the unit normal of what each sample of a surface lies on, nan where it is that of the surface to be
     found; still: (n,), the samples that do not slide along the surface, as where creases would be crossed; None for
     none; held: (n,), the samples that the surface passes through at their own parameters, all coordinates of which
-    count alike, as those of a boundary; None for none. Raises FitError if the shapes do not fit, for a value that is
-    not finite, and for another number that is negative or not finite.
+    count alike, as those of a boundary; None for none.
+
+    slopes: (n, d, 2), the derivatives of the functions along the frame of X at each point, nan where they are not
+    known; fixed: (n,), the samples that are met exactly, with their slopes, and those of a surface with their normals
+    where these are known; None for none, and only fitters that say so know of them. Raises FitError if the shapes do
+    not fit, for a value that is not finite, and for another number that is negative or not finite.
     """
 
     points: Points
@@ -58,6 +62,8 @@ class Samples:
     normals: Floats | None = None
     still: Bools | None = None
     held: Bools | None = None
+    slopes: Floats | None = None
+    fixed: Bools | None = None
 
     __repr__ = one_line
 
@@ -74,9 +80,15 @@ class Samples:
             numbers = getattr(self, "weights" if name == "weight" else name)
             if numbers is not None:
                 _require(name, np.isfinite(numbers) & (numbers >= 0), numbers, "finite and not negative")
-        sizes = [np.shape(table) for table in (self.normals, self.still, self.held) if table is not None]
+        marks = (self.normals, self.still, self.held, self.fixed)
+        sizes = [np.shape(table) for table in marks if table is not None]
         if any(size not in ((count, 3), (count,)) for size in sizes):
             raise FitError(f"{count} samples have normals and flags of shapes {sizes}; they must be (n, 3) and (n,)")
+        if self.slopes is not None and np.shape(self.slopes) != (count, shapes[1][1], 2):
+            raise FitError(
+                f"{count} samples have slopes of shape {np.shape(self.slopes)}; it must be (n, d, 2), two "
+                "derivatives of each function"
+            )
 
     @property
     def shares(self) -> Floats:
@@ -88,7 +100,8 @@ class Samples:
         points = Points(self.points.patch[chosen], self.points.x[chosen])
         numbers = self.values[chosen], self.weights[chosen], self.stretch[chosen]
         area, length = _taken(self.area, chosen), _taken(self.length, chosen)
-        marks = (_taken(table, chosen) for table in (self.normals, self.still, self.held))
+        tables = self.normals, self.still, self.held, self.slopes, self.fixed
+        marks = (_taken(table, chosen) for table in tables)
         return Samples(points, *numbers, area, length, self.order, self.noise, *marks)
 
 

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import csr_array
 
 from orbiframe.components.one_line import one_line
 from orbiframe.components.registry import Registry
 from orbiframe.errors import FitError
-from orbiframe.functions.basis import Basis
+from orbiframe.functions.basis import Basis, chunks_of
 from orbiframe.functions.fitter import Fitter, ValidatedFitter
 from orbiframe.functions.samples import Samples
 from orbiframe.orbifolds.atlas import Points
@@ -22,6 +24,8 @@ from orbiframe.surfaces.surface_integrals import integration
 Floats = NDArray[np.float64]
 
 _BEYOND = 1e-2
+# Data that were believed to less than this are outliers.
+_BELIEVED = 1 / 3
 FITTER = "smoothing"
 
 
@@ -32,7 +36,8 @@ class Field:
     basis and coefficients (size, q): the functions, but for shift (q,) and scale (q,): a value v is shift + scale * v.
     points: where the data lie on X/H; distance: (n,), how far from the surface in space they are; left_out: (n, q),
     what each datum is beyond the field of all others, None where the fitter does not tell; fairing and freedom: how
-    much was smoothed and how many numbers were taken from the data, None likewise.
+    much was smoothed and how many numbers were taken from the data; noise: (q,), the standard deviation of the data;
+    trust: (n,), how far each datum was believed, from 1 to 0; deviation: see `standard_error`; None likewise.
     """
 
     surface: OrbifoldSurface
@@ -45,6 +50,9 @@ class Field:
     left_out: Floats | None = None
     fairing: float | None = None
     freedom: float | None = None
+    noise: Floats | None = None
+    trust: Floats | None = None
+    deviation: Callable[[csr_array], Floats] | None = None
 
     __repr__ = one_line
 
@@ -52,10 +60,34 @@ class Field:
         """The values (n, q) over points of X/H."""
         return np.asarray(self.shift + self.scale * self.basis.values(points, self.coefficients))
 
+    def standard_error(self, points: Points) -> Floats:
+        """The standard errors (n, q) of the values over points of X/H.
+
+        The posterior standard deviation of the smoothing spline (Wahba, 1983), whose scale is what the data are beyond
+        the fields of all others: so bars of 1.96 of them hold the function itself, not the next datum, at about 95 % of
+        the places. Raises FitError for a fitter that does not tell.
+        """
+        if self.deviation is None:
+            raise FitError("this fitter tells no standard errors; take the fitter 'smoothing' or 'robust'")
+        parts = [self.deviation(self.basis.design_matrix(part)) for part in chunks_of(points)]
+        return np.asarray(self.scale * np.concatenate(parts))
+
     @property
     def error(self) -> Floats | None:
-        """The root mean square (q,) of what is wrong at a datum that the field does not know: leave-one-out."""
-        return None if self.left_out is None else np.sqrt(np.mean(self.left_out**2, axis=0))
+        """The root mean square (q,) of what is wrong at a datum that the field does not know: leave-one-out.
+
+        Outliers, and data that are met exactly, do not count.
+        """
+        if self.left_out is None:
+            return None
+        counted = np.isfinite(self.left_out[:, 0])
+        counted[self.outliers] = False
+        return np.asarray(np.sqrt(np.mean(self.left_out[counted] ** 2, axis=0)))
+
+    @property
+    def outliers(self) -> NDArray[np.intp]:
+        """The data that were believed to less than a third, in order; none where the fitter does not tell."""
+        return np.flatnonzero(np.zeros(0) if self.trust is None else self.trust < _BELIEVED)
 
 
 def fit_field(
@@ -65,14 +97,20 @@ def fit_field(
     *,
     fitter: Fitter | None = None,
     basis: Basis | None = None,
+    gradients: ArrayLike | None = None,
+    fixed: ArrayLike | None = None,
 ) -> Field:
     """The smooth functions on a surface that have about these values at these points.
 
     points: n points of X/H, or (n, 3) points in space, whose nearest points on the surface are meant; values: (n,) or
     (n, q). fitter: by default the installed one called "smoothing", which finds from the data how much they are to be
     smoothed; basis: functions on the same X/H, by default those of the surface. Fairness is asked for all over the
-    surface and in its metric, so that few data are joined without ripples. Raises FitError for shapes that do not fit,
-    for values that are not finite, and where the fitter does.
+    surface and in its metric, so that few data are joined without ripples.
+
+    gradients: vectors in space at the points, (n, 3) or (n, 3, q), whose tangential part is the gradient of the
+    function there, nan where it is not known: data as well (Hermite). fixed: (n,), true for data that are met exactly,
+    with their gradients. To meet all, take `smoothing` with the option interpolate. Raises FitError for shapes that do
+    not fit, for values that are not finite, and where the fitter does.
 
     >>> import numpy as np
     >>> from orbiframe import fit
@@ -93,14 +131,54 @@ def fit_field(
     shift, spread = wanted.mean(axis=0), wanted.std(axis=0)
     scale = np.where(spread > 1e-14 * np.abs(shift), spread, 1.0)
     samples = _samples(surface, basis, places, (wanted - shift) / scale)
+    if gradients is not None:
+        samples = replace(samples, slopes=_slopes(surface, places, gradients, scale, len(samples.weights)))
+    if fixed is not None:
+        samples = replace(samples, fixed=_marks(fixed, len(wanted), len(samples.weights)))
     chosen: Fitter = Registry.discover().load("fitter", FITTER)() if fitter is None else fitter
     if not isinstance(chosen, ValidatedFitter):
         return Field(surface, basis, chosen.fit(basis, samples), shift, scale, places, distance)
     found = chosen.fit_validated(basis, samples)
-    left_out = found.left_out[: len(wanted)] * scale
+    own = slice(0, len(wanted))
     return Field(
-        surface, basis, found.coefficients, shift, scale, places, distance, left_out, found.fairing, found.freedom
+        surface,
+        basis,
+        found.coefficients,
+        shift,
+        scale,
+        places,
+        distance,
+        found.left_out[own] * scale,
+        found.fairing,
+        found.freedom,
+        None if found.noise is None else found.noise * scale,
+        None if found.trust is None else found.trust[own],
+        found.deviation,
     )
+
+
+def _slopes(surface: OrbifoldSurface, places: Points, gradients: ArrayLike, scale: Floats, count: int) -> Floats:
+    """Derivatives along the frames of X, (count, q, 2), from gradients in space; nan where there are none."""
+    given = np.asarray(gradients, dtype=np.float64)
+    vectors = given[:, :, None] if given.ndim == 2 else given
+    if vectors.shape != (len(places.patch), 3, len(scale)):
+        raise FitError(
+            f"the gradients have the shape {given.shape}; {len(places.patch)} points with {len(scale)} values need "
+            "(n, 3) or (n, 3, q), nan where a gradient is not known"
+        )
+    found = np.full((count, len(scale), 2), np.nan)
+    found[: len(vectors)] = np.einsum("nki,niq->nqk", surface.jet(places).first, vectors) / scale[:, None]
+    return found
+
+
+def _marks(fixed: ArrayLike, own: int, count: int) -> NDArray[np.bool_]:
+    """Which samples are fixed, (count,)."""
+    given = np.asarray(fixed)
+    if given.shape != (own,) or given.dtype != np.bool_:
+        raise FitError(
+            f"fixed has the shape {given.shape} and the type {given.dtype}; it must be {own} times true or false"
+        )
+    return np.concatenate([given, np.zeros(count - own, dtype=np.bool_)])
 
 
 def _columns(values: ArrayLike, count: int) -> Floats:

@@ -226,15 +226,23 @@ class OrbifoldSurface:
         return Registry.discover().shown(self)
 
     def fit_field(
-        self, points: Points | ArrayLike, values: ArrayLike, *, fitter: Fitter | None = None, basis: Basis | None = None
+        self,
+        points: Points | ArrayLike,
+        values: ArrayLike,
+        *,
+        fitter: Fitter | None = None,
+        basis: Basis | None = None,
+        gradients: ArrayLike | None = None,
+        fixed: ArrayLike | None = None,
     ) -> Field:
         """The smooth functions on this surface that have about these values (n,) or (n, q) at n points.
 
-        points: of X/H, or (n, 3) in space; see `orbiframe.surfaces.fit_field`.
+        points: of X/H, or (n, 3) in space; gradients: in space, (n, 3); fixed: (n,), data that are met exactly; see
+        `orbiframe.surfaces.fit_field`.
         """
         from orbiframe.surfaces.field import fit_field
 
-        return fit_field(self, points, values, fitter=fitter, basis=basis)
+        return fit_field(self, points, values, fitter=fitter, basis=basis, gradients=gradients, fixed=fixed)
 
     def tessellate(self, density: int = 1, *, bisected: bool = False) -> Polyhedron:
         """A triangle mesh on the surface with normals: every triangle of the input in density^2 triangles.

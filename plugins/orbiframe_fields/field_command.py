@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from orbiframe_fields.mesh_field import MeshField
 
 
+# Outliers that are named in the summary; all are in the JSON.
+_NAMED = 12
 _BOUNDARY = ("error", "cap", "collar", "double", "auto")
 
 
@@ -25,6 +27,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("-o", "--output", metavar="OUT", type=Path, required=True, help="the field: .ply, .vtu or .csv")
     add("--value", metavar="NAME", action="append", default=[], help="fit the values of this name, else all")
     add("--fairing", metavar="F", type=float, help="how much is smoothed; as cross-validation says if not given")
+    add("--error-bars", action="store_true", help="write a standard error NAME_error beside every value")
+    shown = parser.add_mutually_exclusive_group().add_argument
+    shown("--robust", choices=("huber", "tukey"), help="outliers count little (huber) or not at all (tukey)")
+    shown("--interpolate", action="store_true", help="meet all data exactly, with the least energy")
     add(
         "--refine", metavar="K", type=int, help="each triangle in K*K; 0: at the vertices of MESH; default: a fine mesh"
     )
@@ -47,7 +53,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     from orbiframe_fields.mesh_field import mesh_field
 
     found = mesh_field(args, registry)
-    write_table(args.output, found.table(args.refine))
+    write_table(args.output, found.table(args.refine, error_bars=args.error_bars))
     told = _summary(found)
     print(json.dumps(told) if args.json else "\n".join(_lines(told)))
     return 0
@@ -62,8 +68,10 @@ def _summary(found: MeshField) -> dict[str, Any]:
         "fairing": [field.fairing for field in found.fields],
         "freedom": [field.freedom for field in found.fields],
         "values": [
-            {"name": name, "from": low, "to": high, "error": error} for name, low, high, error in found.described()
+            {"name": name, "from": low, "to": high, "error": error, "noise": noise}
+            for name, low, high, error, noise in found.described()
         ],
+        "outliers": found.outliers,
     }
 
 
@@ -77,5 +85,10 @@ def _lines(told: dict[str, Any]) -> list[str]:
         (each["name"], f"from {each['from']:.6g} to {each['to']:.6g}, error {each['error']:.1e} at a point left out")
         for each in told["values"]
     ]
+    if told["outliers"] is not None:
+        named = ", ".join(map(str, told["outliers"][:_NAMED])) + (", …" if len(told["outliers"]) > _NAMED else "")
+        noise = ", ".join(f"{each['noise']:.1e}" for each in told["values"])
+        rows.append(("outliers", f"{len(told['outliers'])}, data {named}" if named else "none"))
+        rows.append(("scale", f"{noise}, the standard deviation of the data without them"))
     width = max(len(name) for name, _ in rows) + 2
     return [f"{name:<{width}}{text}" for name, text in rows]

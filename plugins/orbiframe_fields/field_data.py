@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +18,8 @@ from orbiframe.files import confined_tables
 Floats = NDArray[np.float64]
 
 _PLACES = ("x", "y", "z")
+# Marks data that are met exactly: 1 for yes, anything else for no.
+_FIXED = "fixed"
 _NUMBERED = ("vertex", "face")
 _SKIPPED = {"distance", "normal_x", "normal_y", "normal_z"}
 
@@ -26,11 +28,13 @@ _SKIPPED = {"distance", "normal_x", "normal_y", "normal_z"}
 class FieldData:
     """Numbers at points in space.
 
-    places: (n, 3); columns: numbers (n,) or vectors (n, k) by name.
+    places: (n, 3); columns: numbers (n,) or vectors (n, k) by name; fixed: (n,), the data that are to be met exactly,
+    None for none.
     """
 
     places: Floats
     columns: Mapping[str, Floats]
+    fixed: NDArray[np.bool_] | None = None
 
     @property
     def table(self) -> Floats:
@@ -57,7 +61,8 @@ def read_data(path: Path, mesh: Polyhedron, chosen: Sequence[str] = ()) -> Field
     """The numbers of a file, those with the chosen names, or all.
 
     CSV: a line of names and lines of numbers, of which x, y and z are the place, or `vertex` or `face` the number in
-    the mesh, from 0; without either, lines for all vertices or all faces in their order. Other files are read by
+    the mesh, from 0; without either, lines for all vertices or all faces in their order; 1 in a column `fixed`
+    marks what is to be met exactly. Other files are read by
     meshio: data at points, or where there are none at the centroids of cells. Lines with a missing number are left
     out, and that is said. Raises FormatError with the line for anything else that is wrong, UsageError for a name that
     is not there.
@@ -73,7 +78,7 @@ def _chosen(path: Path, data: FieldData, names: Sequence[str]) -> FieldData:
         if name not in data.columns:
             known = ", ".join(data.columns)
             raise UsageError(f"{path} has no values {name!r}, but {known}.{did_you_mean(name, list(data.columns))}")
-    return FieldData(data.places, {name: data.columns[name] for name in names or data.columns})
+    return replace(data, columns={name: data.columns[name] for name in names or data.columns})
 
 
 def _complete(path: Path, data: FieldData) -> FieldData:
@@ -83,7 +88,8 @@ def _complete(path: Path, data: FieldData) -> FieldData:
         raise FormatError(f"{path}: no line has all its numbers; mend the file, or choose values with --value")
     if bad.any():
         warnings.warn(f"{path}: {bad.sum()} of {len(bad)} lines lack a number and are left out", Notice, stacklevel=4)
-    return FieldData(data.places[~bad], {name: values[~bad] for name, values in data.columns.items()})
+    fixed = None if data.fixed is None else data.fixed[~bad]
+    return FieldData(data.places[~bad], {name: values[~bad] for name, values in data.columns.items()}, fixed)
 
 
 # ---- files of meshes ------------------------------------------------------------------------------------------------
@@ -112,8 +118,9 @@ def _of_csv(path: Path, mesh: Polyhedron) -> FieldData:
         places = _numbered(path, found[0], columns[found[0]], mesh)
     else:
         places = _in_order(path, len(table), mesh)
-    apart = {*_PLACES, *_NUMBERED, *_SKIPPED}
-    return FieldData(places, {name: values for name, values in columns.items() if name not in apart})
+    apart = {*_PLACES, *_NUMBERED, *_SKIPPED, _FIXED}
+    fixed = columns[_FIXED] == 1 if _FIXED in columns else None
+    return FieldData(places, {name: values for name, values in columns.items() if name not in apart}, fixed)
 
 
 def _table(path: Path) -> tuple[list[str], Floats]:

@@ -6,13 +6,13 @@ import argparse
 import math
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import FitError, OrbifoldSurface, Points, Polyhedron, Registry, load_surface, read
+from orbiframe import FitError, OrbifoldSurface, Points, Polyhedron, Registry, UsageError, load_surface, read
 from orbiframe.surfaces import Field, fit_field, nearest_points
 from orbiframe_fields.field_data import FieldData, read_data
 from orbiframe_fields.field_table import FieldTable
@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 SURFACE = ".npz"
-_FITTER = "smoothing"
+_FITTER, _ROBUST = "smoothing", "robust"
 _OUTPUT_FACES = 40_000
 # For data that are to be met, two functions for each of them.
 _FUNCTIONS_PER_DATUM = 2
@@ -33,13 +33,14 @@ class MeshField:
     """The fields on the surfaces of a mesh.
 
     mesh: as given; vertices: for each surface the numbers of its vertices in the mesh; fields: one on each surface;
-    data: what they were fitted to.
+    data: what they were fitted to; owned: for each surface the numbers of its data.
     """
 
     mesh: Polyhedron
     vertices: list[Ints]
     fields: list[Field]
     data: FieldData
+    owned: list[Ints]
 
     @property
     def count(self) -> int:
@@ -51,38 +52,66 @@ class MeshField:
         """How far a datum is from the surface at most."""
         return max(float(field.distance.max()) for field in self.fields)
 
-    def described(self) -> Iterator[tuple[str, float, float, float]]:
-        """Of each column of numbers its name, its range in the data, and the error at a datum that is left out."""
-        left_out = np.concatenate([field.left_out for field in self.fields if field.left_out is not None])
-        error = np.sqrt(np.nanmean(left_out**2, axis=0))[None]
-        low, high = self.data.table.min(axis=0), self.data.table.max(axis=0)
-        errors = FieldTable(self.mesh, self.data.unpacked(error)).scalars
-        for k, (name, values) in enumerate(errors.items()):
-            yield name, float(low[k]), float(high[k]), float(values[0])
+    @property
+    def outliers(self) -> list[int] | None:
+        """The numbers of the data that were hardly believed; None where the fitter does not look for them."""
+        if any(field.trust is None for field in self.fields):
+            return None
+        both = zip(self.owned, self.fields, strict=True)
+        return sorted(int(k) for own, field in both for k in own[field.outliers])
 
-    def table(self, refine: int | None) -> FieldTable:
-        """The fields on a mesh: fine, or every triangle in refine^2, or for 0 at the vertices of the mesh itself."""
+    def described(self) -> Iterator[tuple[str, float, float, float, float]]:
+        """Of each column of numbers its name, its range in the data, the error at a datum left out, and the noise."""
+        each = [(len(own), field) for own, field in zip(self.owned, self.fields, strict=True)]
+        error, noise = (_mean_square([(n, getattr(field, name)) for n, field in each]) for name in ("error", "noise"))
+        low, high = self.data.table.min(axis=0), self.data.table.max(axis=0)
+        told = FieldTable(self.mesh, self.data.unpacked(np.stack([error, noise]))).scalars
+        for k, (name, values) in enumerate(told.items()):
+            yield name, float(low[k]), float(high[k]), float(values[0]), float(values[1])
+
+    def table(self, refine: int | None, *, error_bars: bool = False) -> FieldTable:
+        """The fields on a mesh: fine, or every triangle in refine^2, or for 0 at the vertices of the mesh itself.
+
+        error_bars: with their standard errors, after whose names stands _error.
+        """
         if refine == 0:
-            return FieldTable(self.mesh, self.data.unpacked(self._at_vertices()))
+            return FieldTable(self.mesh, self._columns(self._at_vertices(error_bars)))
         meshes, values = [], []
         for field in self.fields:
             mesh, points = _tessellated(field.surface, refine, len(self.fields))
             meshes.append(mesh)
-            values.append(field.evaluate(points))
+            values.append(_told(field, points, error_bars))
         normals = np.concatenate([mesh.normals for mesh in meshes if mesh.normals is not None])
-        return FieldTable(_side_by_side(meshes), {"normal": normals, **self.data.unpacked(np.concatenate(values))})
+        return FieldTable(_side_by_side(meshes), {"normal": normals, **self._columns(np.concatenate(values, axis=1))})
 
-    def _at_vertices(self) -> Floats:
-        values = np.full((len(self.mesh.vertices), self.data.table.shape[1]), np.nan)
+    def _columns(self, told: Floats) -> dict[str, Floats]:
+        """The columns of values, and of their errors if there are some, (1 or 2, n, q)."""
+        values, *errors = told
+        marked = {f"{name}_error": each for part in errors for name, each in self.data.unpacked(part).items()}
+        return self.data.unpacked(values) | marked
+
+    def _at_vertices(self, error_bars: bool) -> Floats:
+        values = np.full((1 + error_bars, len(self.mesh.vertices), self.data.table.shape[1]), np.nan)
         for vertices, field in zip(self.vertices, self.fields, strict=True):
             feet = nearest_points(field.surface, self.mesh.vertices[vertices])[0]
-            values[vertices] = field.evaluate(feet)
+            values[:, vertices] = _told(field, feet, error_bars)
         return values
+
+
+def _told(field: Field, points: Points, error_bars: bool) -> Floats:
+    """The values over points, and their standard errors if wanted, (1 or 2, n, q)."""
+    return np.stack([field.evaluate(points), *([field.standard_error(points)] if error_bars else [])])
+
+
+def _mean_square(parts: list[tuple[int, Floats | None]]) -> Floats:
+    """The root mean square (q,) of numbers that each stand for so many data."""
+    known = [(count, values) for count, values in parts if values is not None]
+    return np.asarray(np.sqrt(sum(n * v**2 for n, v in known) / sum(n for n, _ in known)))
 
 
 def mesh_field(args: argparse.Namespace, registry: Registry) -> MeshField:
     """The fields of the data of a command line, each datum on the surface that is nearest to it."""
-    fitter = registry.load("fitter", _FITTER)(fairing=args.fairing)
+    fitter = _fitter(args, registry)
     saved = args.mesh.suffix.lower() == SURFACE
     if saved:
         surfaces = [load_surface(args.mesh, registry)]
@@ -98,9 +127,19 @@ def mesh_field(args: argparse.Namespace, registry: Registry) -> MeshField:
         surfaces, vertices = [each.surface for each in fitted], [each.vertices for each in fitted]
     args.progress("field", None)
     start = time.perf_counter()
-    fields = [_field(*each, data.table, fitter) for each in _shared(surfaces, data.places)]
+    shared = list(_shared(surfaces, data.places))
+    fields = [_field(*each, data, fitter) for each in shared]
     args.progress("field", time.perf_counter() - start)
-    return MeshField(mesh, vertices, fields, data)
+    return MeshField(mesh, vertices, fields, data, [own for *_, own in shared])
+
+
+def _fitter(args: argparse.Namespace, registry: Registry) -> Any:
+    """The one that the options ask for."""
+    if args.robust:
+        return registry.load("fitter", _ROBUST)(fairing=args.fairing, loss=args.robust)
+    if args.interpolate and args.fairing is not None:
+        raise UsageError("--interpolate meets the data and smooths nothing; leave out --fairing")
+    return registry.load("fitter", _FITTER)(fairing=args.fairing, interpolate=args.interpolate)
 
 
 def _shared(surfaces: list[OrbifoldSurface], places: Floats) -> Iterator[tuple[OrbifoldSurface, Points, Floats, Ints]]:
@@ -114,10 +153,11 @@ def _shared(surfaces: list[OrbifoldSurface], places: Floats) -> Iterator[tuple[O
         yield surface, Points(points.patch[own], points.x[own]), distance[own], own
 
 
-def _field(surface: OrbifoldSurface, points: Points, distance: Floats, own: Ints, table: Floats, fitter: Any) -> Field:
-    from dataclasses import replace
-
-    return replace(fit_field(surface, points, table[own], fitter=fitter), distance=distance)
+def _field(
+    surface: OrbifoldSurface, points: Points, distance: Floats, own: Ints, data: FieldData, fitter: Any
+) -> Field:
+    fixed = None if data.fixed is None else data.fixed[own]
+    return replace(fit_field(surface, points, data.table[own], fitter=fitter, fixed=fixed), distance=distance)
 
 
 def _vertices_of(surface: OrbifoldSurface) -> Polyhedron:

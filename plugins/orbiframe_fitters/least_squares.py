@@ -55,6 +55,7 @@ class LinearFit(NamedTuple):
 
 def linear_fit(basis: Basis, samples: Samples, fairing: float | None) -> LinearFit:
     """The linear least squares fit; without a given fairing as much as the samples ask for, see `LeastSquares`."""
+    require_values_alone(samples)
     require_rows(basis, samples, fairing)
     energy = None if fairing == 0 else energy_of(basis, samples)
     gram, stiff, right = Gram(basis.size), Gram(basis.size), np.zeros((basis.size, samples.values.shape[1]))
@@ -87,6 +88,12 @@ def require_not_negative(fitter: str, **options: float | None) -> None:
     for name, value in options.items():
         if value is not None and not value >= 0:
             raise UsageError(f"option {name} of the fitter {fitter} is {value}; it must not be negative")
+
+
+def require_values_alone(samples: Samples) -> None:
+    """Raises FitError for slopes and fixed samples, of which least squares and sliding know nothing."""
+    if samples.slopes is not None or samples.fixed is not None:
+        raise FitError("slopes and fixed samples are for the fitters 'smoothing' and 'robust'; choose one of them")
 
 
 def require_rows(basis: Basis, samples: Samples, fairing: float | None) -> None:
