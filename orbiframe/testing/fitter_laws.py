@@ -65,6 +65,16 @@ def _settled(component: Component, case: _Case, values: Floats) -> Component:
     return partial(type(fitter), fairing=fitter.fit_validated(case.basis, case.with_values(values)).fairing)
 
 
+def unit_and_zero_of_the_values_do_not_matter(component: Component, lab: Lab) -> None:
+    """The fit of three times the data plus two is three times the fit plus two, of a fitter that is not linear too."""
+    for case in _cases(lab):
+        v = lab.rng.normal(size=(_COUNT, 2))
+        found = case.matrix @ component().fit(case.basis, case.with_values(3 * v + 2))
+        wanted = 3 * (case.matrix @ component().fit(case.basis, case.with_values(v))) + 2
+        error = np.abs(found - wanted).max()
+        assert error <= 1e-5 * np.abs(wanted).max(), f"the functions differ by {error:.3g}"
+
+
 def weights_matter(component: Component, lab: Lab) -> None:
     """Of two values at the same points, the one with the larger weight has more influence."""
     for case in _cases(lab):
@@ -111,6 +121,7 @@ LAWS: tuple[Callable[[Component, Lab], None], ...] = (
     constants_are_reproduced,
     smooth_data_in_the_span_is_nearly_reproduced,
     result_is_linear_in_the_values,
+    unit_and_zero_of_the_values_do_not_matter,
     weights_matter,
     unit_of_the_weights_does_not_matter,
     order_of_samples_does_not_matter,
@@ -154,6 +165,7 @@ MUTANTS: dict[str, Callable[[Component], Component]] = {
     "constants_are_reproduced": _altered(after=lambda c, _: 0.99 * c),
     "smooth_data_in_the_span_is_nearly_reproduced": _altered(after=lambda c, _: np.mean(c, axis=0) + 0 * c),
     "result_is_linear_in_the_values": _altered(after=lambda c, samples: c + 0.01 * np.abs(samples.values).max()),
+    "unit_and_zero_of_the_values_do_not_matter": _altered(after=lambda c, _: np.round(c, 1)),
     "weights_matter": _altered(before=lambda s: _with_weights(s, np.ones_like(s.weights))),
     "unit_of_the_weights_does_not_matter": _altered(after=lambda c, s: c * (1 + 0.01 * s.weights.mean())),
     "order_of_samples_does_not_matter": _altered(before=lambda s: s.take(np.arange(len(s.weights) // 2))),
