@@ -37,7 +37,8 @@ class ValidatedFit(NamedTuple):
 
     deviation: takes rows, sparse (k, size), to the standard errors (k, d) of what they find in the fit; noise: (d,),
     the standard deviation of the values as the fit finds it; trust: (n,), how far each sample was believed, from 1 to 0
-    for an outlier, nan without weight. None where the fitter does not tell.
+    for an outlier, nan without weight; outliers: (n,), the samples that are off by more than chance makes likely. None
+    where the fitter does not tell.
     """
 
     coefficients: Floats
@@ -47,6 +48,7 @@ class ValidatedFit(NamedTuple):
     deviation: Callable[[csr_array], Floats] | None = None
     noise: Floats | None = None
     trust: Floats | None = None
+    outliers: NDArray[np.bool_] | None = None
 
 
 class ValidatedFitter(Fitter):

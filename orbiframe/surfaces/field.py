@@ -24,8 +24,6 @@ from orbiframe.surfaces.surface_integrals import integration
 Floats = NDArray[np.float64]
 
 _BEYOND = 1e-2
-# Data that were believed to less than this are outliers.
-_BELIEVED = 1 / 3
 FITTER = "smoothing"
 
 
@@ -37,7 +35,8 @@ class Field:
     points: where the data lie on X/H; distance: (n,), how far from the surface in space they are; left_out: (n, q),
     what each datum is beyond the field of all others, None where the fitter does not tell; fairing and freedom: how
     much was smoothed and how many numbers were taken from the data; noise: (q,), the standard deviation of the data;
-    trust: (n,), how far each datum was believed, from 1 to 0; deviation: see `standard_error`; None likewise.
+    trust: (n,), how far each datum was believed, from 1 to 0; outliers: the numbers of data that are far off;
+    deviation: see `standard_error`; None likewise.
     """
 
     surface: OrbifoldSurface
@@ -52,6 +51,7 @@ class Field:
     freedom: float | None = None
     noise: Floats | None = None
     trust: Floats | None = None
+    outliers: NDArray[np.intp] | None = None
     deviation: Callable[[csr_array], Floats] | None = None
 
     __repr__ = one_line
@@ -81,13 +81,9 @@ class Field:
         if self.left_out is None:
             return None
         counted = np.isfinite(self.left_out[:, 0])
-        counted[self.outliers] = False
+        if self.outliers is not None:
+            counted[self.outliers] = False
         return np.asarray(np.sqrt(np.mean(self.left_out[counted] ** 2, axis=0)))
-
-    @property
-    def outliers(self) -> NDArray[np.intp]:
-        """The data that were believed to less than a third, in order; none where the fitter does not tell."""
-        return np.flatnonzero(np.zeros(0) if self.trust is None else self.trust < _BELIEVED)
 
 
 def fit_field(
@@ -153,6 +149,7 @@ def fit_field(
         found.freedom,
         None if found.noise is None else found.noise * scale,
         None if found.trust is None else found.trust[own],
+        None if found.outliers is None else np.flatnonzero(found.outliers[own]),
         found.deviation,
     )
 

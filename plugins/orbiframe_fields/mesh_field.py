@@ -54,11 +54,10 @@ class MeshField:
 
     @property
     def outliers(self) -> list[int] | None:
-        """The numbers of the data that were hardly believed; None where the fitter does not look for them."""
-        if any(field.trust is None for field in self.fields):
-            return None
-        both = zip(self.owned, self.fields, strict=True)
-        return sorted(int(k) for own, field in both for k in own[field.outliers])
+        """The numbers of the data that are far off; None where the fitter does not look for them."""
+        marked = [(own, field.outliers) for own, field in zip(self.owned, self.fields, strict=True)]
+        known = [own[outliers] for own, outliers in marked if outliers is not None]
+        return sorted(np.concatenate(known).tolist()) if known else None
 
     def described(self) -> Iterator[tuple[str, float, float, float, float]]:
         """Of each column of numbers its name, its range in the data, the error at a datum left out, and the noise."""

@@ -20,6 +20,7 @@ Weighing = Callable[[Floats], Floats]
 # Where errors are normal, fits by these have 95 % of the efficiency of least squares (Huber, 1964; Beaton and Tukey,
 # 1974; Holland and Welsch, 1977).
 _HUBER, _TUKEY = 1.345, 4.685
+_OUTLIER = 4.0  # standard deviations: of 16,000 normal errors one is larger
 _NORMAL = 1.4826  # the standard deviation of a normal error, of its median absolute value
 _MOST_STEPS, _SETTLED = 50, 1e-9
 
@@ -48,7 +49,8 @@ class Robust(ValidatedFitter):
     of its kind. fairing: how much is smoothed; by default first as the least median of the errors by cross-validation
     says, and then as cross-validation of the trusted data does.
 
-    Raises UsageError for an unknown loss, and what `smoothing` raises.
+    Outliers are data that are off by more than four standard deviations. Raises UsageError for an unknown loss, and
+    what `smoothing` raises.
     """
 
     linear = False
@@ -74,10 +76,13 @@ class Robust(ValidatedFitter):
         if self.loss == "tukey":
             trust, found = _settled(system, fairing, trust, _tukey)
         told = np.where(samples.weights > 0, 1.0, np.nan)
-        told[np.unique(system.soft.sample)] = trust
+        sample = np.unique(system.soft.sample)
+        told[sample] = trust
+        outliers = np.zeros(len(told), dtype=np.bool_)
+        outliers[sample] = _relative(found) > _OUTLIER
         noise = _NORMAL * np.median(np.abs(found.sizes), axis=0)
         fit = validated(basis, samples, _trusting(system, trust), found, fairing, noise)
-        return fit._replace(noise=noise, trust=told)
+        return fit._replace(noise=noise, trust=told, outliers=outliers)
 
 
 def _trusting(system: SmoothingSystem, trust: Floats) -> SmoothingSystem:
@@ -91,14 +96,14 @@ def _settled(system: SmoothingSystem, fairing: float, trust: Floats, weigh: Weig
     every = np.arange(len(trust))
     for _ in range(_MOST_STEPS):
         found = _trusting(system, trust).fit(fairing, every)
-        before, trust = trust, _trust(found, weigh)
+        before, trust = trust, weigh(_relative(found))
         if np.abs(trust - before).max(initial=0) < _SETTLED:
             break
     return before, found
 
 
-def _trust(found: Fit, weigh: Weighing) -> Floats:
-    """By the errors of each datum, those of several functions together, against their median."""
+def _relative(found: Fit) -> Floats:
+    """The errors of each datum, those of several functions together, by the median of all, (k,)."""
     size = np.sqrt((found.sizes**2).mean(axis=1))
     scale = _NORMAL * float(np.median(size)) if len(size) else 0.0
-    return weigh(size / scale) if scale > 0 else np.ones(len(size))
+    return np.asarray(size / scale if scale > 0 else np.zeros(len(size)))

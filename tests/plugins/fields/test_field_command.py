@@ -54,6 +54,60 @@ def test_values_at_the_vertices_become_a_function_everywhere(orbiframe, surface,
     assert told["points"] == 288
 
 
+def test_error_bars_stand_beside_the_values(orbiframe, surface, tmp_path) -> None:
+    """In the data's own unit, on the fine mesh and at the vertices; about 95 % of the truth lies within two of them."""
+    x = vertices()
+    rng = np.random.default_rng(0)
+    first, second = (heat(x) + 0.1 * rng.normal(size=len(x)) for _ in range(2))
+    data = csv(tmp_path / "data.csv", x, first, 1000 * second)
+    ran = orbiframe("field", surface, data, "-o", tmp_path / "out.vtu", "--error-bars", "--json")
+    assert ran.status == 0, ran.err
+    fine = meshio.read(tmp_path / "out.vtu").point_data
+    places = meshio.read(tmp_path / "out.vtu").points
+    assert set(fine) == {"normal", "a", "b", "a_error", "b_error"}
+    held = np.abs(fine["a"] - heat(places)) < 1.96 * fine["a_error"]
+    assert 0.85 < held.mean() < 1
+    assert fine["b_error"].mean() > 100 * fine["a_error"].mean()
+    assert json.loads(ran.out)["values"][0]["noise"] == pytest.approx(0.1, rel=0.3)
+    assert orbiframe("field", surface, data, "-o", tmp_path / "out.csv", "--error-bars", "--refine", 0).status == 0
+    assert (tmp_path / "out.csv").read_text().split("\n")[0] == "vertex,x,y,z,a,b,a_error,b_error"
+
+
+def test_outliers_are_named_and_data_can_be_met(orbiframe, surface, tmp_path) -> None:
+    x = vertices()
+    values = heat(x) + 0.05 * np.random.default_rng(0).normal(size=len(x))
+    values[[30, 200]] += 4
+    data = csv(tmp_path / "data.csv", x, values)
+    ran = orbiframe("field", surface, data, "-o", tmp_path / "out.csv", "--robust", "huber", "--json", "--refine", 0)
+    assert ran.status == 0, ran.err
+    assert {30, 200} <= set(json.loads(ran.out)["outliers"]) <= {*json.loads(ran.out)["outliers"][:6], 30, 200}
+    found = np.loadtxt(tmp_path / "out.csv", delimiter=",", skiprows=1)[:, 4]
+    assert np.abs(found - heat(x)).max() < 0.3
+    said = orbiframe("field", surface, data, "-o", tmp_path / "out.csv", "--robust", "tukey", "--refine", 0).out
+    assert "30" in said.split("outliers")[1].split("\n")[0]
+    ran = orbiframe("field", surface, data, "-o", tmp_path / "out.csv", "--interpolate", "--refine", 0, "--json")
+    met = np.loadtxt(tmp_path / "out.csv", delimiter=",", skiprows=1)[:, 4]
+    # The vertices are a little beside the surface, and so are their feet from one call to the next.
+    np.testing.assert_allclose(met, values, atol=1e-4)
+    assert json.loads(ran.out)["outliers"] is None
+    ran = orbiframe("field", surface, data, "-o", tmp_path / "out.csv", "--interpolate", "--fairing", 1)
+    assert ran.status == 2
+    assert "leave out --fairing" in ran.err
+
+
+def test_a_column_marks_what_is_met(orbiframe, surface, tmp_path) -> None:
+    x = vertices()
+    values = heat(x) + 0.2 * np.random.default_rng(0).normal(size=len(x))
+    fixed = np.arange(len(x)) < 4
+    rows = np.column_stack([x, values, fixed])
+    np.savetxt(tmp_path / "data.csv", rows, delimiter=",", header="x,y,z,a,fixed", comments="")
+    ran = orbiframe("field", surface, tmp_path / "data.csv", "-o", tmp_path / "out.csv", "--refine", 0)
+    assert ran.status == 0, ran.err
+    missed = np.abs(np.loadtxt(tmp_path / "out.csv", delimiter=",", skiprows=1)[:, 4] - values)
+    assert missed[:4].max() < 1e-4
+    assert np.median(missed[4:]) > 0.05
+
+
 def test_noise_is_smoothed_and_told(orbiframe, surface, tmp_path) -> None:
     x, noise = vertices(), 0.1
     values = heat(x) + noise * np.random.default_rng(0).normal(size=len(x))
