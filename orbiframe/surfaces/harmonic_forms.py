@@ -6,14 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_array, csr_array
-from scipy.sparse.linalg import splu
+from scipy.sparse import csr_array
 
 from orbiframe.components.one_line import one_line
 from orbiframe.components.registry import Registry
 from orbiframe.errors import FitError
 from orbiframe.functions.basis import Basis
 from orbiframe.orbifolds.atlas import Points
+from orbiframe.splines.condensation import least_energy
 from orbiframe.splines.element_basis import ElementBasis
 from orbiframe.splines.galerkin import stiffness
 from orbiframe.splines.multivalued import branches, jumping
@@ -80,13 +80,7 @@ class HarmonicForms:
         """The multivalued functions of least energy, which is given on all branches."""
         chosen = cohomology(basis.domain) if jumps is None else np.asarray(jumps, dtype=np.intp)
         require_cocycles(basis.domain, chosen)
-        first, added = jumping(basis, chosen), basis.matrix
-        # Constants have no energy; that of function 0 is kept at zero.
-        inner = csc_array(added.T @ (energy @ added))[1:, 1:]
-        right = -(added.T @ (energy @ first))[1:]
-        factor = splu(csc_array(inner), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-        moved = np.concatenate([np.zeros((1, len(chosen))), factor.solve(right)])
-        found = first + added @ moved
+        found = least_energy(basis, energy, jumping(basis, chosen))
         gram = found.T @ (energy @ found)
         return cls(basis, space, found, chosen, (gram + gram.T) / 2)
 
