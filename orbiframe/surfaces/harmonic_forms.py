@@ -93,6 +93,10 @@ class HarmonicForms:
         """Their components along the frames of X at points, (b, n, 2)."""
         return np.moveaxis(self.branches.jets(points, self.coefficients, 1)[1:3], (0, 2), (2, 0))
 
+    def potentials(self, points: Points) -> Floats:
+        """The multivalued functions at points, (n, b); each is known up to a whole number alone."""
+        return self.branches.values(points, self.coefficients)
+
     def combined(self, factors: Ints) -> HarmonicForms:
         """Sums of them with whole factors (k, b)."""
         both = self.coefficients @ factors.T, factors @ self.jumps, factors @ self.gram @ factors.T
