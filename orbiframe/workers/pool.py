@@ -40,11 +40,6 @@ class Outcome:
     lost: str = ""
 
 
-def processors() -> int:
-    """How many processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 def work(
     items: Iterable[Any],
     make: Callable[..., Task],

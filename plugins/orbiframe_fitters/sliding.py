@@ -12,6 +12,7 @@ from scipy.sparse import csr_array
 
 from orbiframe import Basis, DifferentiableBasis, Fitter, Points, Samples
 from orbiframe.functions import foot_step, moved
+from orbiframe.workers import in_threads
 from orbiframe_fitters.energy import FAIRING, Energy, energy_of, spacing
 from orbiframe_fitters.gram import Gram
 from orbiframe_fitters.kinks import Kinks
@@ -112,7 +113,7 @@ class _Feet:
 
     def under(self, coefficients: Floats, targets: Floats) -> _Feet:
         """The same points on another surface."""
-        jets = np.stack([matrix @ coefficients for matrix in self.matrices])
+        jets = _products(self.matrices, coefficients)
         return _Feet(self.points, self.matrices, jets, targets - jets[0])
 
     def replaced(self, rows: Ints, other: _Feet) -> _Feet:
@@ -187,7 +188,7 @@ class _Slide:
 
     def _feet(self, points: Points, targets: Floats, coefficients: Floats) -> _Feet:
         matrices = self.basis.jet_matrices(points, 2)
-        jets = np.stack([matrix @ coefficients for matrix in matrices])
+        jets = _products(matrices, coefficients)
         return _Feet(points, matrices, jets, targets - jets[0])
 
     def _under(self, feet: list[_Feet], coefficients: Floats) -> list[_Feet]:
@@ -343,6 +344,10 @@ def _joined(rows: list[list[Any]]) -> Floats | csr_array:
     if isinstance(rows[0][0], np.ndarray):
         return np.block(rows)
     return csr_array(scipy.sparse.block_array(rows))
+
+
+def _products(matrices: list[csr_array], coefficients: Floats) -> Floats:
+    return np.stack(list(in_threads(lambda matrix: np.asarray(matrix @ coefficients), matrices)))
 
 
 def _stacked(a: csr_array, b: csr_array) -> csr_array:
