@@ -53,7 +53,7 @@ class OrbitSumBasis(DifferentiableBasis):
         blocks = list(self._blocks(points, order, lambda block: block))
         count = np.zeros(len(points.patch), dtype=np.intp)
         for block in blocks:
-            count[block.pairs.rows] = block.count
+            count[block.pairs.rows] = block.reached
         start = np.concatenate([[0], np.cumsum(count)])
         pattern = start.astype(np.int32 if start[-1] < 2**31 else np.int64)
         column = np.empty(start[-1], dtype=pattern.dtype)
@@ -61,12 +61,11 @@ class OrbitSumBasis(DifferentiableBasis):
         jets = [np.empty(start[-1]) for _ in range(JET_KINDS[order])]
 
         def enter(block: _Block) -> None:
-            place = np.concatenate([[0], np.cumsum(block.count)])
-            own_column, own = np.empty(place[-1], dtype=pattern.dtype), np.empty((len(jets), place[-1]))
-            lost = quotient_rows(*self._described(block), place, own_column, own, np.empty(len(jets)))
+            place, there = np.concatenate([[0], np.cumsum(block.reached)]), start[block.pairs.rows]
+            own = np.empty((len(jets), place[-1]))
+            lost = quotient_rows(*self._described(block), place, there, column, own, np.empty(len(jets)))
             _require_covered(points, block, lost)
-            there = start[block.pairs.rows]
-            for values, target in zip((own_column, *own), (column, *jets), strict=True):
+            for values, target in zip(own, jets, strict=True):
                 put_rows(values, place, there, target)
 
         for _ in in_threads(enter, blocks):
@@ -79,7 +78,7 @@ class OrbitSumBasis(DifferentiableBasis):
         values = np.empty((JET_KINDS[order], len(points.patch), given.shape[1]))
 
         def enter(block: _Block) -> None:
-            width = int(block.count.max(initial=0))
+            width = int(block.reached.max(initial=0))
             room = np.empty(width, dtype=np.int32), np.empty((len(values), width)), np.empty(len(values))
             lost = quotient_values(*self._described(block), block.pairs.rows, room, given, values)
             _require_covered(points, block, lost)
@@ -90,7 +89,7 @@ class OrbitSumBasis(DifferentiableBasis):
 
     def values(self, points: Points, coefficients: Floats) -> Floats:
         """See `Basis`; found without a matrix."""
-        return self.jets(points, coefficients, 0)[0]
+        return np.asarray(self.jets(points, coefficients, 0)[0])
 
     def _blocks(self, points: Points, order: int, task: Callable[[_Block], Result]) -> Iterator[Result]:
         """What a task makes of the pairs of points and lifts, block by block."""
@@ -124,7 +123,7 @@ class _Block(NamedTuple):
 
     pairs: Pairs
     profile: tuple[Floats, ...]
-    count: Ints
+    reached: Ints
 
 
 def _require_covered(points: Points, block: _Block, lost: int) -> None:
@@ -138,7 +137,7 @@ def _require_covered(points: Points, block: _Block, lost: int) -> None:
     )
 
 
-def _matrix(values: Floats, column: Ints, start: Ints, size: int) -> csr_array:
+def _matrix(values: Floats, column: NDArray[Any], start: NDArray[Any], size: int) -> csr_array:
     matrix = csr_array((values, column, start), shape=(len(start) - 1, size))
     matrix.has_sorted_indices = True
     return matrix

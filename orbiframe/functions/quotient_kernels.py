@@ -15,15 +15,15 @@ _TINY = np.finfo(np.float64).tiny
 
 
 @compiled(arrays=False, may_divide_by_zero=True)
-def quotient_rows(curvature, pairs, profile, place, column, jets, total):  # type: ignore[no-untyped-def]
+def quotient_rows(curvature, pairs, profile, place, there, column, jets, total):  # type: ignore[no-untyped-def]
     """The jets of all functions at each point; returns the first row that no function reaches, or -1.
 
     pairs: start (r + 1,), column (p,), versine (p,), slope (p, 2), support (N,); profile: f, f', f'' and f''' (p,),
-    those that are needed; place: (r + 1,), where each row begins in column (q,) and jets (m, q), m = 1, 3, 6 or 12 by
-    the order; total: room for m numbers.
+    those that are needed; place: (r + 1,), where each row begins in jets (m, q), m = 1, 3, 6 or 12 by the order; there:
+    (r,), where it begins in column; total: room for m numbers.
     """
     for i in range(len(place) - 1):
-        end = _merged_row(curvature, pairs, profile, i, place[i], column, jets)
+        end = _merged_row(curvature, pairs, profile, i, there[i], column, place[i], jets)
         if not _divided(jets, place[i], end, total):
             return i
     return -1
@@ -37,7 +37,7 @@ def quotient_values(curvature, pairs, profile, rows, room, coefficients, values)
     """
     column, jets, total = room
     for i in range(len(rows)):
-        end = _merged_row(curvature, pairs, profile, i, 0, column, jets)
+        end = _merged_row(curvature, pairs, profile, i, 0, column, 0, jets)
         if not _divided(jets, 0, end, total):
             return i
         for kind in range(len(jets)):
@@ -69,15 +69,15 @@ def put_rows(values, start, there, target):  # type: ignore[no-untyped-def]
 
 
 @compiled(arrays=False, may_divide_by_zero=True)
-def _merged_row(curvature, pairs, profile, i, begin, column, jets):  # type: ignore[no-untyped-def]
-    """Write the columns and jets of the sums over lifts of row i from `begin` on; returns their end."""
+def _merged_row(curvature, pairs, profile, i, there, column, begin, jets):  # type: ignore[no-untyped-def]
+    """Write columns from `there` on and jets from `begin` on, of the sums over lifts of row i; returns their end."""
     start, centre, versine, slope, support = pairs
     f, df, ddf, third = profile
     place = begin - 1
     for k in range(start[i], start[i + 1]):
         if k == start[i] or centre[k] != centre[k - 1]:
             place += 1
-            column[place] = centre[k]
+            column[there + place - begin] = centre[k]
             for kind in range(len(jets)):
                 jets[kind, place] = 0.0
         jets[0, place] += f[k]

@@ -6,7 +6,6 @@ number. A process that dies costs nobody else anything: its item is tried once m
 
 from __future__ import annotations
 
-import os
 import pickle
 import queue
 import subprocess

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from orbiframe import Basis, DifferentiableBasis, Fitter, Points, Samples
-from orbiframe.functions import foot_step, moved
+from orbiframe.functions import foot_points, foot_step, moved
 from orbiframe.workers import in_threads
 from orbiframe_fitters.energy import FAIRING, Energy, energy_of, spacing
+from orbiframe_fitters.few_samples import few_samples
 from orbiframe_fitters.gram import Gram
 from orbiframe_fitters.kinks import Kinks
 from orbiframe_fitters.least_squares import chunks, linear_fit, require_not_negative
@@ -34,6 +35,8 @@ _GAIN = 0.97
 _LEAST_STEPS = 4
 # A smooth surface is shrunk to at least so much in one step at every datum: beyond, a limb is being pinched off.
 _LEAST_SHARE = 0.35
+# So many steps of Newton's lead data that were left out so far to their feet.
+_ALL_STEPS = 2
 # Up to so many functions the equations of a step are factored as a whole; of more, iteration takes less time.
 _DIRECT = 200
 
@@ -84,8 +87,13 @@ class Sliding(Fitter):
         first = linear_fit(basis, samples, self.fairing)
         if samples.values.shape[1] != 3 or not isinstance(basis, DifferentiableBasis):
             return first.coefficients
-        slide = _Slide(basis, samples, self._schedules(basis, samples, first.fairing))
-        return slide.from_start(first.coefficients, self.steps)
+        schedules = self._schedules(basis, samples, first.fairing)
+        few = few_samples(basis, samples)
+        slide = _Slide(basis, few, schedules)
+        found = slide.from_start(first.coefficients, self.steps)
+        if few is samples or not self.steps:
+            return found
+        return slide.with_all(found, samples, schedules[min(self.steps, len(schedules)) - 1])
 
     def _schedules(self, basis: Basis, samples: Samples, fairing: float) -> tuple[Schedule, ...]:
         """Those of the order of the energy, or the fairing that is given or that noise asks for."""
@@ -186,6 +194,18 @@ class _Slide:
                 break
         return coefficients
 
+    def with_all(self, coefficients: Floats, samples: Samples, schedule: Schedule) -> Floats:
+        """The coefficients after one more step for which all samples count, each once and in no memory but its own."""
+        gram, right = self._empty()
+        longest = _LONGEST_STEP * self.spacing
+        for part, _ in chunks(samples.take(np.flatnonzero(samples.weights > 0))):
+            points, _ = foot_points(self.basis, coefficients, part.points, part.values, longest, _ALL_STEPS)
+            jets = self.basis.jets(points, coefficients, 2)
+            feet = _Feet(points, self.basis.jet_matrices(points, 0), jets, part.values - jets[0])
+            self._enter(gram, right, feet, part, schedule)
+        trial = coefficients + self._solved(gram, right, coefficients, schedule)
+        return coefficients if self._pinched(coefficients, trial) else trial
+
     def _feet(self, points: Points, targets: Floats, coefficients: Floats) -> _Feet:
         matrices = self.basis.jet_matrices(points, 2)
         jets = _products(matrices, coefficients)
@@ -231,11 +251,24 @@ class _Slide:
 
     def _change(self, feet: list[_Feet], coefficients: Floats, schedule: Schedule) -> Floats:
         """The change of the coefficients by one step of Gauss and Newton."""
-        gram, right = Gram(self.basis.size, 6, self._room), np.zeros((self.basis.size, 3))
+        gram, right = self._empty()
         for found, part in zip(feet, self.data, strict=True):
-            weights, wanted = _linearised(found, part, schedule)
-            gram.add(found.matrices[0], weights)
-            right += found.matrices[0].T @ wanted
+            self._enter(gram, right, found, part, schedule)
+        return self._solved(gram, right, coefficients, schedule)
+
+    def _empty(self) -> tuple[Gram, Floats]:
+        """The equations of a step before any data."""
+        return Gram(self.basis.size, 6, self._room), np.zeros((self.basis.size, 3))
+
+    @staticmethod
+    def _enter(gram: Gram, right: Floats, feet: _Feet, part: Samples, schedule: Schedule) -> None:
+        """Add some data to the equations of a step."""
+        weights, wanted = _linearised(feet, part, schedule)
+        gram.add(feet.matrices[0], weights)
+        right += feet.matrices[0].T @ wanted
+
+    def _solved(self, gram: Gram, right: Floats, coefficients: Floats, schedule: Schedule) -> Floats:
+        """The change of the coefficients by equations in which all data are entered; the rest is added here."""
         if self.kinks is not None:
             weights, wanted = self._smoothed(self.kinks, coefficients)
             gram.add(self.kinks.jump, weights)
