@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -106,7 +106,8 @@ class HarmonicForms:
 def continuous_functions(surface: OrbifoldSurface, degree: int) -> ElementBasis:
     """Continuous polynomials on the triangles of the functions of a surface, or of its map where these have none."""
     basis: Basis = surface.basis
-    domain = basis.domain if isinstance(basis, ElementBasis) else surface.triangulation
+    # Continuous functions need not know where the surface has creases.
+    domain = replace(basis.domain, crease=None) if isinstance(basis, ElementBasis) else surface.triangulation
     size = basis.size * degree**2 // 2
     made = Registry.discover().load("basis", FUNCTIONS)(surface.orbifold, domain, degree=degree, size=size)
     if not isinstance(made, ElementBasis):

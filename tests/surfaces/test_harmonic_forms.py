@@ -185,3 +185,15 @@ def test_what_does_not_fit_is_said():
         edge_form(made, np.zeros(4))
     with pytest.raises(FitError, match="opposite"):
         edge_form(made, np.ones(len(made.triangulation.polyhedron.tail)))
+
+
+@pytest.mark.long
+def test_a_surface_with_creases_has_its_forms_too():
+    """The functions are continuous anyway; corners only make the error larger."""
+    creased = config(300, "basis.name=ps2", "data.creases=30")
+    made = fit(DATASETS / "plate_genus2_coarse.off", creased, REGISTRY).surface
+    assert made.basis.domain.crease is not None
+    found = period_matrix(HarmonicForms.on_surface(made, degree=4))
+    assert found.forms.count == 4
+    assert np.linalg.eigvalsh(found.matrix.imag).min() > 0
+    assert found.error < 0.05

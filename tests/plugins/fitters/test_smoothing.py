@@ -203,6 +203,19 @@ def test_outliers_are_named_and_do_not_pull(torus, loss):
     assert 0.04 < field.error[0] < 0.09
 
 
+def test_a_robust_fit_meets_what_is_fixed(torus):
+    points = scattered(torus, 120)
+    values = smooth(torus.evaluate(points))
+    values[[5, 80]] += 2
+    fixed = np.arange(120) == 5
+    field = torus.fit_field(points, values, fixed=fixed, fitter=Robust())
+    missed = np.abs(field.evaluate(points)[:, 0] - values)
+    assert missed[5] < 1e-9
+    assert missed[80] > 1
+    assert 80 in field.outliers
+    assert 5 not in field.outliers
+
+
 def test_without_outliers_robust_is_nearly_smoothing(torus):
     points = scattered(torus, 300)
     values = smooth(torus.evaluate(points)) + 0.05 * np.random.default_rng(1).normal(size=300)
