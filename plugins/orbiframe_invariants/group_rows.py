@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from orbiframe_invariants.symbol_description import symbol_rows
@@ -46,7 +47,7 @@ def _computed_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
     if shortest := found.get("systole"):
         rows.append(("systole", f"{shortest['length']:.12g}, {shortest['multiplicity']} closed geodesics"))
     rows += [
-        ("spectrum" if k == 0 else "", f"{e['value']:.12g} ({e['multiplicity']})")
+        ("spectrum" if k == 0 else "", _eigenvalue(e))
         for k, e in enumerate(found.get("spectrum", []))
     ]
     if "function" in found:
@@ -54,6 +55,15 @@ def _computed_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
     if "picture" in found:
         rows.append(("picture", found["picture"]))
     return rows
+
+
+def _eigenvalue(found: dict[str, Any]) -> str:
+    """The value to the digits that are sure, its multiplicity, and its error; exact ones have none."""
+    value, error = found["value"], found["error"]
+    if error == 0:
+        return f"{value:.15g} ({found['multiplicity']})"
+    decimals = min(max(math.ceil(-math.log10(error)), 1), 15)
+    return f"{value:.{decimals}f} ({found['multiplicity']}), error {error:.1e}"
 
 
 def _matrix_rows(kind: str, matrices: dict[str, list[list[float]]]) -> list[tuple[str, str]]:
