@@ -46,10 +46,7 @@ def _computed_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
             ]
     if shortest := found.get("systole"):
         rows.append(("systole", f"{shortest['length']:.12g}, {shortest['multiplicity']} closed geodesics"))
-    rows += [
-        ("spectrum" if k == 0 else "", _eigenvalue(e))
-        for k, e in enumerate(found.get("spectrum", []))
-    ]
+    rows += [("spectrum" if k == 0 else "", _eigenvalue(e)) for k, e in enumerate(found.get("spectrum", []))]
     if "function" in found:
         rows.append(("function", f"{found['function']['number']}, eigenvalue {found['function']['eigenvalue']:.9g}"))
     if "picture" in found:
