@@ -49,7 +49,7 @@ def heat_distances(mesh: Polyhedron, start: Ints, time: float = 1.0) -> Floats:
     length = np.linalg.norm(fall, axis=1, keepdims=True)
     unit = fall / np.where(length > 0, length, 1.0)
     shares = np.einsum("fai,fi->fa", slopes, unit) * double[:, None] / 2
-    right = np.bincount(corners.ravel(), shares.ravel(), count)
+    right = np.bincount(corners.ravel(), shares.ravel(), count).astype(np.float64)
     scale = _ANCHOR * stiff.diagonal().mean() / mass.diagonal().mean()
     found = _solved(csc_array(stiff + scale * mass), right)
     return np.asarray(found - found[start].mean())

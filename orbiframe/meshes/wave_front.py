@@ -88,12 +88,9 @@ def through_side(first, second, base, here, there):  # type: ignore[no-untyped-d
     if not (second < np.inf and base > 0):
         return along
     x = (base**2 + first**2 - second**2) / (2 * base)
-    below = first**2 - x**2
     far = (base**2 + here**2 - there**2) / (2 * base)
-    above = here**2 - far**2
-    if below < 0 or above < 0:
-        return along
-    y, z = np.sqrt(below), np.sqrt(above)
+    # On the line of the side, up to rounding, squares are 0.
+    y, z = np.sqrt(max(first**2 - x**2, 0.0)), np.sqrt(max(here**2 - far**2, 0.0))
     if y + z <= 0:
         return along
     crossing = x + (far - x) * y / (y + z)

@@ -11,9 +11,12 @@ from .distance_along_surface import GeodesicDistance as GeodesicDistance, geodes
 from .equations import biharmonic as biharmonic, heat as heat, poisson as poisson
 from .exact_patches import patches_of as patches_of
 from .field import Field as Field, fit_field as fit_field
+from .for_jax import jax_surface as jax_surface
+from .for_torch import torch_surface as torch_surface
 from .geodesic_faces import GeodesicFaces as GeodesicFaces, input_faces as input_faces
 from .gram_schmidt import Orthonormal as Orthonormal, orthonormal as orthonormal
 from .nearest import nearest_points as nearest_points
+from .operator import SurfaceOperator as SurfaceOperator
 from .periodic_patch import PeriodicPatch as PeriodicPatch
 from .principal import (
     PrincipalCurvature as PrincipalCurvature,

@@ -75,7 +75,7 @@ def geodesic_distance(
     """The distance along the surface from the nearest of some points.
 
     sources: points of X/H, or (n, 3) points in space, whose nearest points on the surface are meant. method: "front", a
-    wave front that goes from triangle to triangle of a fine mesh on the surface, right to some thousandths; or "heat",
+    wave front that goes from triangle to triangle of a fine mesh on the surface, right to some thousandths of the largest; or "heat",
     by the flow of heat, smooth and a few percent off. triangles: about how many that mesh has at least; the error falls
     with their size. On a surface with a boundary, ways stay within it. Raises FitError for sources that are not there,
     UsageError for another method.
@@ -94,7 +94,7 @@ def geodesic_distance(
     faces = len(surface.triangulation.own_faces)
     mesh, points = surface.tessellation(max(1, int(np.ceil(np.sqrt(triangles / faces)))), bisected=True)
     found = GeodesicDistance(mesh, points, np.zeros(len(mesh.vertices)))
-    nearest = found._tree.query(begin)[1]
+    nearest = np.asarray(found._tree.query(begin)[1], dtype=np.intp)
     if method == "heat":
         return replace(found, values=heat_distances(mesh, np.unique(nearest)))
     return replace(found, values=front_distances(mesh, *_about(found, begin, nearest)))
