@@ -1,5 +1,6 @@
 """The public names of orbiframe.surfaces, each with the module it lives in."""
 
+from .colour_scale import ColourScale as ColourScale
 from .curved_edges import edge_curves as edge_curves
 from .curved_triangles import (
     CurvedMesh as CurvedMesh,

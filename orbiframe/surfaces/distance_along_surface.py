@@ -75,10 +75,10 @@ def geodesic_distance(
     """The distance along the surface from the nearest of some points.
 
     sources: points of X/H, or (n, 3) points in space, whose nearest points on the surface are meant. method: "front", a
-    wave front that goes from triangle to triangle of a fine mesh on the surface, right to some thousandths of the largest; or "heat",
-    by the flow of heat, smooth and a few percent off. triangles: about how many that mesh has at least; the error falls
-    with their size. On a surface with a boundary, ways stay within it. Raises FitError for sources that are not there,
-    UsageError for another method.
+    wave front that goes from triangle to triangle of a fine mesh on the surface, right to some thousandths of the
+    largest; or "heat", by the flow of heat, smooth and a few percent off. triangles: how many that mesh has at least;
+    the error falls with their size. On a surface with a boundary, ways stay within it. Raises FitError for sources that
+    are not there, UsageError for another method.
 
     >>> from orbiframe import fit
     >>> from orbiframe.surfaces import geodesic_distance

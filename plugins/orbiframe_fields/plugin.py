@@ -21,6 +21,18 @@ def orbiframe_components() -> list[Component]:
             "orbiframe_fields.field_command:configure",
             "smooth functions on the surface of a mesh from values at points",
         ),
+        Component(
+            "command",
+            "spectrum",
+            "orbiframe_fields.spectrum_command:configure",
+            "eigenvalues and eigenfunctions of the surface of a mesh, and signatures",
+        ),
+        Component(
+            "command",
+            "distance",
+            "orbiframe_fields.distance_command:configure",
+            "geodesic distance along the surface of a mesh",
+        ),
     ]
 
 
