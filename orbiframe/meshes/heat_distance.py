@@ -56,4 +56,6 @@ def heat_distances(mesh: Polyhedron, start: Ints, time: float = 1.0) -> Floats:
 
 
 def _solved(matrix: csc_array, right: Floats) -> Floats:
-    return np.asarray(splu(matrix, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}).solve(right))
+    return np.asarray(
+        splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}).solve(right)
+    )

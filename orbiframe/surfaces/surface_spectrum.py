@@ -53,25 +53,30 @@ def spectrum(forms: SurfaceForms, count: int) -> Spectrum:
 
     The errors are the least of three: the residual, from which an eigenvalue is no farther (Weinstein); residual^2 /
     gap, with the gap to those eigenvalues found that are farther than the residuals (Temple and Kato); and the integral
-    of (2 h residual / (pi degree))^2, the square of what the functions cannot follow, with the size h of the triangles in
-    space: an estimate, which exceeds what is missing by a factor of 2.5 to 20 where it was tried. They know
-    nothing of quadrature, which is right to rounding or nearly so for the functions of the surface itself, nor how far
-    the surface is from another one that was meant. They are nan for functions without a continuous gradient, and
-    for those with creases.
+    of (2 h residual / (pi degree))^2, the square of what the functions cannot follow, with the size h of the triangles
+    in space: an estimate, which exceeds what is missing by a factor of 2.5 to 20 where it was tried. They know nothing
+    of quadrature, which is right to rounding or nearly so for the functions of the surface itself, nor how far the
+    surface is from another one that was meant. They are nan for functions without a continuous gradient, and for those
+    with creases.
     """
     size = forms.basis.size
     if not 1 <= count <= size - _MARGIN - 2:
         raise FitError(f"{count} eigenvalues are wanted of {size} functions; ask for 1 to {size - _MARGIN - 2}")
     values, columns = _smallest(forms, count + _MARGIN)
     residual, seen = _residuals(forms, values, columns)
-    error = np.minimum(np.minimum(residual, residual**2 / _gaps(values, residual)), seen) + _ROUNDING * values[-1]
+    error = np.minimum(np.minimum(residual, _with_gaps(values, residual)), seen) + _ROUNDING * values[-1]
     return Spectrum(forms, values[:count], columns[:, :count], residual[:count], error[:count])
 
 
 def _smallest(forms: SurfaceForms, count: int) -> tuple[Floats, Floats]:
     stiff, mass = csc_array(forms.stiffness), csc_array(forms.mass)
     shift = 4 * np.pi / forms.area  # Weyl: about so far apart are the eigenvalues
-    factor = splu(csc_array(stiff + shift * mass), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+    factor = splu(
+        csc_array(stiff + shift * mass),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
     inverse = LinearOperator(stiff.shape, matvec=factor.solve, dtype=np.float64)
     start = np.random.default_rng(0).standard_normal(forms.basis.size)
     values, columns = eigsh(stiff, count, mass, sigma=-shift, which="LM", OPinv=inverse, v0=start)
@@ -100,8 +105,9 @@ def _reach(forms: SurfaceForms) -> Floats:
     return np.asarray(stretch * np.repeat(2 * longest, len(stretch) // len(longest)) / (np.pi * basis.degree))
 
 
-def _gaps(values: Floats, residual: Floats) -> Floats:
-    """From each eigenvalue to the nearest that is no neighbour within the residuals; the last has none beyond it."""
+def _with_gaps(values: Floats, residual: Floats) -> Floats:
+    """The squares of the residuals over the gaps to the nearest eigenvalues that are farther; inf where none is."""
     apart = np.abs(values[:, None] - values)
     apart[~(apart > residual[:, None] + residual)] = np.inf
-    return np.asarray(apart.min(axis=1))
+    gap = apart.min(axis=1)
+    return np.where(np.isfinite(gap), residual**2 / gap, np.inf)

@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from creased import fitted_with_creases
 from fitted import DATASETS, REGISTRY, config
 from round_surfaces import RADIUS, forms as forms_on_torus, round_torus_eigenvalues, sphere, torus
 from scipy.special import eval_legendre
@@ -113,3 +114,20 @@ def test_what_cannot_be_is_an_error():
         heat_kernel(of_sphere(), points, points, 0.0)
     with pytest.raises(FitError, match="no eigenvalue is near"):
         wave_kernel_signature(of_sphere(), points, [200.0], 0.1)
+
+
+def test_coarse_functions_have_large_errors():
+    """Where all eigenvalues are within the residuals there is no gap, and no error that is 0 for want of one."""
+    made = fit(DATASETS / "plate_genus2_coarse.off", config(60, "basis.name=ps2"), REGISTRY).surface
+    found = spectrum(SurfaceForms.of(made), 5)
+    assert (found.error[1:] > 1e-3 * found.values[1:]).all()
+    finer = REGISTRY.load("basis", "ps2")(made.orbifold, made.basis.domain.refined().refined())
+    off = found.values - spectrum(SurfaceForms.of(made, finer), 5).values
+    assert (off <= found.error).all()
+
+
+def test_creases_and_corners_have_no_error():
+    creased = fitted_with_creases("cube", 30, 200, "basis.name=ps2").surface
+    found = spectrum(SurfaceForms.of(creased), 4)
+    assert np.isnan(found.error).all()
+    assert np.isfinite(found.values).all()
