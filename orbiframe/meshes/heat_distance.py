@@ -15,13 +15,16 @@ Ints = NDArray[np.intp]
 
 # The mass that makes the Laplacian invertible, as a share: constants are taken away afterwards.
 _ANCHOR = 1e-10
+# Heat falls by e over the root of the time; that is no shorter than the extent over this, lest heat far away is rounding.
+_SHARPEST = 150
 
 
 def heat_distances(mesh: Polyhedron, start: Ints, time: float = 1.0) -> Floats:
     """The distance (V,) from the vertices `start`, whose mean is 0, on a connected triangle mesh.
 
     Heat that has flowed for a short time from the start falls in the direction away from it; the distance is the
-    function whose gradient is nearest to unit vectors of that direction. time: in squares of the mean length of edges.
+    function whose gradient is nearest to unit vectors of that direction. time: in squares of the mean length of edges,
+    and no less than makes heat far away a number.
     Smooth, and a few percent off, most beyond two ways of equal length; see `front_distances`. Raises GeometryError for
     triangles without area.
 
@@ -41,7 +44,8 @@ def heat_distances(mesh: Polyhedron, start: Ints, time: float = 1.0) -> Floats:
     row, column = np.repeat(corners, 3, axis=1).ravel(), np.tile(corners, 3).ravel()
     stiff = csc_array(coo_array((local.ravel(), (row, column)), shape=(count, count)))
     mass = diags_array(np.bincount(corners.ravel(), np.repeat(double / 6, 3), count))
-    step = time * float(np.mean(np.linalg.norm(edges, axis=2))) ** 2
+    least = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))) / _SHARPEST
+    step = max(time * float(np.mean(np.linalg.norm(edges, axis=2))) ** 2, least**2)
     hot = np.zeros(count)
     hot[start] = 1.0
     warm = _solved(csc_array(mass + step * stiff), hot)
