@@ -15,7 +15,7 @@ Ints = NDArray[np.intp]
 
 # The mass that makes the Laplacian invertible, as a share: constants are taken away afterwards.
 _ANCHOR = 1e-10
-# Heat falls by e over the root of the time; that is no shorter than the extent over this, lest heat far away is rounding.
+# Heat falls by e over the root of the time: no less than the extent over this, lest heat far away is rounding.
 _SHARPEST = 150
 
 

@@ -75,9 +75,9 @@ def geodesic_distance(
 
     sources: points of X/H, or (n, 3) points in space, whose nearest points on the surface are meant. method: "front", a
     wave front that goes from triangle to triangle of a fine mesh on the surface, right to some thousandths of the
-    largest; or "heat", by the flow of heat, smooth and a few percent off. triangles: how many that mesh has at least, by
-    default 150,000, for heat 40,000; the error falls with their size. On a surface with a boundary, ways stay within it.
-    Raises FitError for sources that are not there, UsageError for another method.
+    largest; or "heat", by the flow of heat, smooth and a few percent off. triangles: how many that mesh has at least;
+    by default 150,000, for heat 40,000. The error falls with their size. On a surface with a boundary, ways stay within
+    it. Raises FitError for sources that are not there, UsageError for another method.
 
     >>> from orbiframe import fit
     >>> from orbiframe.surfaces import geodesic_distance
