@@ -38,7 +38,8 @@ def orbiframe_components() -> list[Component]:
 
 @hookimpl
 def orbiframe_warm_up() -> list[str]:
-    """Curvature of a surface of the functions that the command takes."""
+    """Curvature of a surface of the functions that the command takes, and distances along one."""
     return [
         "curvature torus.off -o curvature.csv",
+        "distance torus.off --from 0 --set basis.size=200 -o distance.csv",
     ]
