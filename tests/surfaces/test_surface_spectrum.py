@@ -127,7 +127,7 @@ def test_coarse_functions_have_large_errors():
 
 
 def test_creases_and_corners_have_no_error():
-    creased = fitted_with_creases("cube", 30, 200, "basis.name=ps2").surface
+    creased = fitted_with_creases("cube.off", 30, 200, "basis.name=ps2").surface
     found = spectrum(SurfaceForms.of(creased), 4)
     assert np.isnan(found.error).all()
     assert np.isfinite(found.values).all()
