@@ -54,7 +54,7 @@ def spectrum(forms: SurfaceForms, count: int) -> Spectrum:
     The errors are the least of three: the residual, from which an eigenvalue is no farther (Weinstein); residual^2 /
     gap, with the gap to those eigenvalues found that are farther than the residuals (Temple and Kato); and the integral
     of (2 h residual / (pi degree))^2, the square of what the functions cannot follow, with the size h of the triangles
-    in space: an estimate, which exceeds what is missing by a factor of 2.5 to 20 where it was tried. They know nothing
+    in space: an estimate, which exceeds what is missing by a factor of 2.5 to 30 where it was tried. They know nothing
     of quadrature, which is right to rounding or nearly so for the functions of the surface itself, nor how far the
     surface is from another one that was meant. They are nan for functions without a continuous gradient, and for those
     with creases.
