@@ -1,5 +1,6 @@
 """The public names of orbiframe.surfaces, each with the module it lives in."""
 
+from .colour_scale import ColourScale as ColourScale
 from .complex_structure import PeriodMatrix as PeriodMatrix, period_matrix as period_matrix
 from .curved_edges import edge_curves as edge_curves
 from .curved_triangles import (
@@ -8,14 +9,18 @@ from .curved_triangles import (
     joined_meshes as joined_meshes,
     node_exponents as node_exponents,
 )
-from .equations import heat as heat, poisson as poisson
+from .distance_along_surface import GeodesicDistance as GeodesicDistance, geodesic_distance as geodesic_distance
+from .equations import biharmonic as biharmonic, heat as heat, poisson as poisson
 from .exact_patches import patches_of as patches_of
 from .field import Field as Field, fit_field as fit_field
+from .for_jax import jax_surface as jax_surface
+from .for_torch import torch_surface as torch_surface
 from .geodesic_faces import GeodesicFaces as GeodesicFaces, input_faces as input_faces
 from .gram_schmidt import Orthonormal as Orthonormal, orthonormal as orthonormal
 from .harmonic_forms import HarmonicForms as HarmonicForms
 from .hodge import Decomposition as Decomposition, Hodge as Hodge
 from .nearest import nearest_points as nearest_points
+from .operator import SurfaceOperator as SurfaceOperator
 from .periodic_patch import PeriodicPatch as PeriodicPatch
 from .principal import (
     PrincipalCurvature as PrincipalCurvature,
@@ -23,8 +28,14 @@ from .principal import (
 )
 from .quadrilateral_patches import QuadrilateralPatches as QuadrilateralPatches
 from .shaded_mesh import ShadedPicture as ShadedPicture, shaded_picture as shaded_picture
+from .signatures import (
+    heat_kernel as heat_kernel,
+    heat_kernel_signature as heat_kernel_signature,
+    wave_kernel_signature as wave_kernel_signature,
+)
 from .surface import Curvature as Curvature, OrbifoldSurface as OrbifoldSurface, Tessellation as Tessellation
 from .surface_forms import SurfaceForms as SurfaceForms
+from .surface_spectrum import Spectrum as Spectrum, spectrum as spectrum
 from .textures import (
     TextureDistortion as TextureDistortion,
     texture_coordinates as texture_coordinates,

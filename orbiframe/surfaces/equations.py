@@ -1,4 +1,4 @@
-"""Equations on surfaces in space, or on X/H: Poisson's equation, and the flow of heat."""
+"""Equations on surfaces in space, or on X/H: Poisson's equation, the biharmonic one, and the flow of heat."""
 
 from __future__ import annotations
 
@@ -31,6 +31,16 @@ def poisson(forms: SurfaceForms, source: Floats) -> Floats:
         )
     right = forms.against(forms.weights * (values - total / forms.area))
     return _of_mean_zero(forms, right)
+
+
+def biharmonic(forms: SurfaceForms, source: Floats) -> Floats:
+    """The coefficients (size,) of the function u of mean 0 with Laplacian Laplacian u = source: plates, and splines.
+
+    source: (n,), its values at `forms.points`. As two equations of Poisson, which on a closed surface it is, so that
+    functions need no more than gradients, and the order of the error is that of `poisson`. Raises what that does.
+    """
+    bent = poisson(forms, source)
+    return _of_mean_zero(forms, forms.mass @ bent)
 
 
 def heat(forms: SurfaceForms, start: Floats, time: float, steps: int = 64) -> Floats:

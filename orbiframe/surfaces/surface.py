@@ -28,6 +28,7 @@ from orbiframe.triangulations.triangulation import Triangulation
 if TYPE_CHECKING:
     from orbiframe.functions.fitter import Fitter
     from orbiframe.surfaces.field import Field
+    from orbiframe.surfaces.operator import SurfaceOperator
     from orbiframe.surfaces.shaded_mesh import ShadedPicture
 
 Floats = NDArray[np.float64]
@@ -224,6 +225,15 @@ class OrbifoldSurface:
         from orbiframe.components.registry import Registry
 
         return Registry.discover().shown(self)
+
+    def operator(self, points: Points, order: int = 0) -> SurfaceOperator:
+        """The sparse matrices from coefficients to values over points of X/H, and derivatives up to an order of 1 or 2.
+
+        See `orbiframe.surfaces.SurfaceOperator`.
+        """
+        from orbiframe.surfaces.operator import surface_operator
+
+        return surface_operator(self, points, order)
 
     def fit_field(
         self,

@@ -28,7 +28,8 @@ class SurfaceForms:
     """Quadratic forms of functions on X/H.
 
     points: n Gauss points; weights: (n,), the area of each; metric: (n, 3), the entries 11, 12 and 22 of the inverse of
-    the first fundamental form there, in the frames of X.
+    the first fundamental form there, in the frames of X; drift: (n, 2), what the Laplacian of the surface takes away
+    from the traces of covariant Hessians of X, as a vector along which to derive.
 
     >>> import numpy as np
     >>> from orbiframe import fit
@@ -42,6 +43,7 @@ class SurfaceForms:
     points: Points
     weights: Floats
     metric: Floats
+    drift: Floats
 
     @classmethod
     def of(
@@ -61,12 +63,15 @@ class SurfaceForms:
             )
         over = integration(surface, chosen, number)
         if on_x:
-            return cls(chosen, over.points, over.area_on_x, np.tile([1.0, 0.0, 1.0], (len(over.area), 1)))
-        first = surface.jet(over.points).first
+            count = len(over.area)
+            return cls(chosen, over.points, over.area_on_x, np.tile([1.0, 0.0, 1.0], (count, 1)), np.zeros((count, 2)))
+        _, first, second = surface.jet(over.points)
         e, f, g = (np.einsum("ni,ni->n", first[:, a], first[:, b]) for a, b in ((0, 0), (0, 1), (1, 1)))
         square = (over.area / over.area_on_x * surface.scale**2) ** 2
         metric = np.stack([g, -f, e], axis=1) / square[:, None]
-        return cls(chosen, over.points, over.area * surface.scale**2, metric)
+        # The two connections differ by the tangential part of the covariant Hessian of the surface.
+        bend = np.einsum("nk,nki,nai->na", metric * [1.0, 2.0, 1.0], second, first)
+        return cls(chosen, over.points, over.area * surface.scale**2, metric, _raised(metric, bend))
 
     @property
     def area(self) -> float:
@@ -93,6 +98,19 @@ class SurfaceForms:
         parts = (jets[0].T @ weighted[chosen] for jets, chosen in self._rows())
         return np.asarray(sum(parts, start=np.zeros(self.basis.size)))
 
+    def laplacians(self, coefficients: Floats) -> Floats:
+        """The Laplacians (n, q) at the Gauss points of q functions with coefficients (size, q)."""
+        parts = []
+        for begin in range(0, len(self.weights), _CHUNK):
+            chosen = slice(begin, begin + _CHUNK)
+            part = Points(self.points.patch[chosen], self.points.x[chosen])
+            parts.append(self._laplacians(self.basis.jets(part, coefficients, 2), chosen))
+        return np.concatenate(parts)
+
+    def _laplacians(self, jets: Floats, chosen: slice) -> Floats:
+        bends = np.einsum("nk,knq->nq", self.metric[chosen] * [1.0, 2.0, 1.0], jets[3:])
+        return np.asarray(bends - np.einsum("nk,knq->nq", self.drift[chosen], jets[1:3]))
+
     def _rows(self) -> Iterator[tuple[list[csr_array], slice]]:
         for begin in range(0, len(self.weights), _CHUNK):
             chosen = slice(begin, begin + _CHUNK)
@@ -107,6 +125,12 @@ class SurfaceForms:
 
     def _sum(self, parts: Iterator[csr_array]) -> csr_array:
         return csr_array(sum(parts, start=csr_array((self.basis.size, self.basis.size))))
+
+
+def _raised(metric: Floats, covectors: Floats) -> Floats:
+    """Covectors (n, 2) as vectors."""
+    a, b, c = metric.T
+    return np.stack([a * covectors[:, 0] + b * covectors[:, 1], b * covectors[:, 0] + c * covectors[:, 1]], axis=1)
 
 
 def _gradients(first: csr_array, second: csr_array, metric: Floats) -> csr_array:

@@ -77,11 +77,11 @@ class MeshField:
             return FieldTable(self.mesh, self._columns(self._at_vertices(error_bars)))
         meshes, values = [], []
         for field in self.fields:
-            mesh, points = _tessellated(field.surface, refine, len(self.fields))
+            mesh, points = tessellated(field.surface, refine, len(self.fields))
             meshes.append(mesh)
             values.append(_told(field, points, error_bars))
         normals = np.concatenate([mesh.normals for mesh in meshes if mesh.normals is not None])
-        return FieldTable(_side_by_side(meshes), {"normal": normals, **self._columns(np.concatenate(values, axis=1))})
+        return FieldTable(side_by_side(meshes), {"normal": normals, **self._columns(np.concatenate(values, axis=1))})
 
     def _columns(self, told: Floats) -> dict[str, Floats]:
         """The columns of values, and of their errors if there are some, (1 or 2, n, q)."""
@@ -114,7 +114,7 @@ def mesh_field(args: argparse.Namespace, registry: Registry) -> MeshField:
     saved = args.mesh.suffix.lower() == SURFACE
     if saved:
         surfaces = [load_surface(args.mesh, registry)]
-        mesh = _vertices_of(surfaces[0])
+        mesh = vertices_of(surfaces[0])
         vertices = [np.arange(len(mesh.vertices))]
         data = read_data(args.data, mesh, args.value)
     else:
@@ -159,13 +159,13 @@ def _field(
     return replace(fit_field(surface, points, data.table[own], fitter=fitter, fixed=fixed), distance=distance)
 
 
-def _vertices_of(surface: OrbifoldSurface) -> Polyhedron:
+def vertices_of(surface: OrbifoldSurface) -> Polyhedron:
     """The mesh of a saved surface, its triangles, in space."""
     coarse = surface.own_mesh
     return coarse.with_vertices(surface.origin + surface.scale * coarse.vertices)
 
 
-def _tessellated(surface: OrbifoldSurface, refine: int | None, parts: int) -> tuple[Polyhedron, Points]:
+def tessellated(surface: OrbifoldSurface, refine: int | None, parts: int) -> tuple[Polyhedron, Points]:
     """Every triangle of the input cut alike, or the refined mesh cut so that it has about as many faces as wanted."""
     if refine is not None:
         return surface.tessellation(refine)
@@ -173,7 +173,7 @@ def _tessellated(surface: OrbifoldSurface, refine: int | None, parts: int) -> tu
     return surface.tessellation(max(1, round(math.sqrt(_OUTPUT_FACES / parts / faces))), bisected=True)
 
 
-def _side_by_side(meshes: list[Polyhedron]) -> Polyhedron:
+def side_by_side(meshes: list[Polyhedron]) -> Polyhedron:
     """One mesh of all."""
     begin = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     corners = np.concatenate([mesh.tail + first for mesh, first in zip(meshes, begin, strict=False)])

@@ -35,6 +35,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--prove", action="store_true", help="prove the relations of the regular polygon exactly, without rounding")
     add("--systole", action="store_true", help="the shortest closed geodesic, and how many there are")
     add("--spectrum", metavar="N", type=int, help="the N smallest eigenvalues of the Laplacian, with multiplicities")
+    add("--degree", metavar="D", type=int, help="of the polynomials of --spectrum, even, from 4 to 14; default 10")
+    add("--tolerance", metavar="T", type=float, help="the largest error of --spectrum, relative to values above 1")
     add("--periods", action="store_true", help="the period matrix of an orientable surface, in its standard letters")
     add("--matrices", action="store_true", help="the matrices of the side pairings, and of the loops along the sides")
     add("--draw", metavar="FILE", type=Path, help="a picture of the polygon and its tiles, .svg, .png or .pdf")
@@ -51,8 +53,7 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
     """Describe the group, compute and draw what was asked for."""
     from orbiframe_invariants.named_words import word_named
 
-    if args.spectrum is not None and args.spectrum < 1:
-        raise UsageError(f"--spectrum {args.spectrum}: ask for at least 1 eigenvalue")
+    _require_spectrum(args)
     _require_picture(args, registry)
     if Path(args.word).suffix == SUFFIX:
         own = _own_polygon(args, registry)
@@ -69,6 +70,20 @@ def run(args: argparse.Namespace, registry: Registry) -> int:
             found.update(_computed(args, _group(word, args.polygon, registry), registry))
     print(json.dumps(found) if args.json else "\n".join(group_lines(found)))
     return 0
+
+
+def _require_spectrum(args: argparse.Namespace) -> None:
+    """Raise UsageError for a number of eigenvalues, a degree or a tolerance that cannot be."""
+    if args.spectrum is None:
+        for name in ("degree", "tolerance"):
+            if getattr(args, name) is not None:
+                raise UsageError(f"--{name} belongs to a spectrum; say how many eigenvalues, such as --spectrum 5")
+    elif args.spectrum < 1:
+        raise UsageError(f"--spectrum {args.spectrum}: ask for at least 1 eigenvalue")
+    if args.degree is not None and (args.degree % 2 or not 4 <= args.degree <= 14):
+        raise UsageError(f"--degree {args.degree}: give an even degree from 4 to 14")
+    if args.tolerance is not None and not 0 < args.tolerance < 1:
+        raise UsageError(f"--tolerance {args.tolerance:g}: give a number between 0 and 1, such as 1e-9")
 
 
 def _require_picture(args: argparse.Namespace, registry: Registry) -> None:
@@ -165,9 +180,15 @@ def _computed(args: argparse.Namespace, group: Group, registry: Registry) -> dic
         found["spectrum"] = _listed(spherical_spectrum(elements, args.spectrum))
     elif args.spectrum:
         from orbiframe.delaunay import polygon_triangulation
-        from orbiframe_invariants.laplace_spectrum import laplace_spectrum
+        from orbiframe_invariants.laplace_spectrum import DEGREE, laplace_spectrum
 
-        values = laplace_spectrum(polygon_triangulation(group), _polynomials(registry), args.spectrum)
+        values = laplace_spectrum(
+            polygon_triangulation(group),
+            _polynomials(registry),
+            args.spectrum,
+            degree=DEGREE if args.degree is None else args.degree,
+            tolerance=args.tolerance,
+        )
         found["spectrum"] = _listed(values)
     if args.draw:
         found["picture"] = str(args.draw)

@@ -51,10 +51,7 @@ def _computed_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
         rows.append(("", f"within {periods['error']:.0e}"))
     if shortest := found.get("systole"):
         rows.append(("systole", f"{shortest['length']:.12g}, {shortest['multiplicity']} closed geodesics"))
-    rows += [
-        ("spectrum" if k == 0 else "", f"{e['value']:.12g} ({e['multiplicity']})")
-        for k, e in enumerate(found.get("spectrum", []))
-    ]
+    rows += [("spectrum" if k == 0 else "", _eigenvalue(e)) for k, e in enumerate(found.get("spectrum", []))]
     if "function" in found:
         rows.append(("function", f"{found['function']['number']}, eigenvalue {found['function']['eigenvalue']:.9g}"))
     if "picture" in found:
@@ -67,6 +64,15 @@ def _complex(pair: list[float], digits: int) -> str:
     real, imaginary = pair
     sign = "-" if round(imaginary, digits) < 0 else "+"
     return f"{round(real, digits) + 0.0:.{digits}g} {sign} {abs(round(imaginary, digits)):.{digits}g}i"
+
+
+def _eigenvalue(found: dict[str, Any]) -> str:
+    """The value to the digits that are sure, its multiplicity, and its error; exact ones have none."""
+    value, error = found["value"], found["error"]
+    if error == 0:
+        return f"{value:.15g} ({found['multiplicity']})"
+    decimals = min(max(math.ceil(-math.log10(error)), 1), 15)
+    return f"{value:.{decimals}f} ({found['multiplicity']}), error {error:.1e}"
 
 
 def _matrix_rows(kind: str, matrices: dict[str, list[list[float]]]) -> list[tuple[str, str]]:

@@ -20,39 +20,83 @@ Floats = NDArray[np.float64]
 _LONGEST_EDGE = 0.8
 # Edges resolve a wave where edge length times square root of the eigenvalue stays below this, for degrees from 8 on.
 _RESOLUTION = 4.0
-_FIRST_DEGREE, _DEGREES = 4, (8, 10)
+_FIRST_DEGREE, DEGREE, _LOWEST, _HIGHEST = 4, 10, 4, 14
 _SAME = 1e-7
+_ROUNDING = 1e-14
+_MOST = 60_000  # functions, which take a minute and some gigabytes
 _MARGIN = 6  # eigenvalues beyond the wanted one, among which the iteration converges
 
 Family = Callable[[GeodesicTriangulation, int], ElementBasis]
 
 
 class Eigenvalue(NamedTuple):
-    """An eigenvalue of the Laplacian -Delta, how often it occurs, and how far two degrees are apart on it."""
+    """An eigenvalue of the Laplacian -Delta, how often it occurs, and how far it may be off: see `laplace_spectrum`."""
 
     value: float
     multiplicity: int
     error: float
 
 
-def laplace_spectrum(domain: GeodesicTriangulation, family: Family, count: int) -> list[Eigenvalue]:
+def laplace_spectrum(
+    domain: GeodesicTriangulation,
+    family: Family,
+    count: int,
+    *,
+    degree: int = DEGREE,
+    tolerance: float | None = None,
+) -> list[Eigenvalue]:
     """The `count` smallest different eigenvalues of X/H with their multiplicities, from 0 on.
 
-    By Galerkin's method, so all values are upper bounds: in the spaces `family(domain, degree)` of continuous
-    polynomials of the even degrees 8 and 10, which contain the constants, on a triangulation refined until it resolves
-    the waves. The error of a value falls like h^(2 degree), and the difference of the two degrees bounds it. Values
-    nearer to one another than ten such differences count as one. Raises FitError for a count below 1.
+    By Galerkin's method, so all values are upper bounds, up to rounding: in the space `family(domain, degree)` of
+    continuous polynomials of an even degree, which contains the constants, on a triangulation refined until it resolves
+    the waves. The error falls like h^(2 degree): it is the difference from the values of degree - 2, or what rounding
+    does to values that should be equal and to the 0 if that is more. Values nearer to one another than ten errors, or
+    1e-7, count as one.
+
+    tolerance: the largest error, relative to values above 1; the degree is raised, then the triangulation refined,
+    until it is met. Raises FitError for a count below 1, for a degree that is odd or not from 4 to 14, and for a
+    tolerance that is not met with the most functions.
     """
     if count < 1:
         raise FitError(f"{count} eigenvalues are wanted; ask for at least 1")
+    if degree % 2 or not _LOWEST <= degree <= _HIGHEST:
+        raise FitError(f"the degree is {degree}; it must be even, from {_LOWEST} to {_HIGHEST}")
     number = _needed(domain, family, count)
     while True:
-        fine = _resolving(domain, number)
-        rough, values = (eigenvalues(family(fine, degree), number) for degree in _DEGREES)
-        found = _clusters(values, np.abs(rough - values))
+        found = _within(_resolving(domain, number), family, number, count, degree, tolerance)
         if len(found) >= count:
             return found[:count]
         number *= 2
+
+
+def _within(
+    domain: GeodesicTriangulation, family: Family, number: int, count: int, degree: int, tolerance: float | None
+) -> list[Eigenvalue]:
+    """The different ones of so many eigenvalues, the first `count` to a tolerance."""
+    rough = eigenvalues(family(domain, degree - 2), number)
+    while True:
+        values = eigenvalues(family(domain, degree), number)
+        found = _clusters(values, np.abs(rough - values) + _rounding(values))
+        worst = max((e.error / max(e.value, 1) for e in found[:count]), default=0.0)
+        if tolerance is None or worst <= tolerance or len(found) < count:
+            return found
+        if degree < _HIGHEST:
+            degree, rough = degree + 2, values
+            continue
+        # Half the edges have errors that are smaller by 2^-2d, and the next degree below shows them.
+        domain = domain.refined()
+        size = domain.face_count * degree**2 // 2
+        if size > _MOST:
+            raise FitError(
+                f"the tolerance {tolerance:g} is not met: the error is {worst:.1e}, and {size} functions would be the "
+                f"next; ask for a tolerance of {1.1 * worst:.1e}, or for fewer eigenvalues"
+            )
+        rough = eigenvalues(family(domain, degree - 2), number)
+
+
+def _rounding(values: Floats) -> Floats:
+    """What rounding does to eigenvalues, about: to the first, which is 0, and to equal ones."""
+    return np.asarray(np.abs(values[0]) + _ROUNDING * np.maximum(values, 1))
 
 
 def _needed(domain: GeodesicTriangulation, family: Family, count: int) -> int:
@@ -93,7 +137,7 @@ def eigenfunction(domain: GeodesicTriangulation, family: Family, number: int) ->
     if number < 0:
         raise FitError(f"eigenfunction {number} is wanted; they are counted from 0, the constant one")
     count = number + _MARGIN
-    space = family(_resolving(domain, count), _DEGREES[0])
+    space = family(_resolving(domain, count), DEGREE - 2)
     values, coefficients = eigenfunctions(space, count)
     return space, coefficients[:, number : number + 1], float(values[number])
 
@@ -134,5 +178,9 @@ def _clusters(values: Floats, errors: Floats) -> list[Eigenvalue]:
     margin = np.maximum(10 * errors, _SAME * np.maximum(values, 1))
     cuts = np.flatnonzero(np.diff(values) > margin[1:]) + 1
     runs = np.split(np.arange(len(values)), cuts)[:-1]
-    found = [Eigenvalue(float(values[run].mean()), len(run), float(errors[run].max())) for run in runs]
-    return [Eigenvalue(0.0, *found[0][1:]), *found[1:]] if found and abs(found[0].value) < _SAME else found
+    found = [
+        Eigenvalue(float(values[run].mean()), len(run), float(max(errors[run].max(), np.ptp(values[run]))))
+        for run in runs
+    ]
+    # The constants are in the space, and their eigenvalue is 0.
+    return [Eigenvalue(0.0, found[0].multiplicity, 0.0), *found[1:]] if found and abs(found[0].value) < _SAME else found

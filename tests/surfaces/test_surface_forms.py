@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 from fitted import DATASETS, REGISTRY, config
+from round_surfaces import round_torus_eigenvalues
 from scipy.sparse import csr_array, hstack
 
 from orbiframe import fit
@@ -39,21 +40,6 @@ def test_area_and_first_eigenvalues_of_the_round_torus_in_space():
     assert forms.area == pytest.approx(4 * np.pi**2 * 0.4, rel=1e-4)
     found = scipy.linalg.eigh(forms.stiffness.toarray(), forms.mass.toarray(), eigvals_only=True)[:6]
     np.testing.assert_allclose(found, round_torus_eigenvalues(0.4)[:6], rtol=1e-3, atol=1e-6)
-
-
-def round_torus_eigenvalues(r: float) -> np.ndarray:
-    """By Fourier series: u(v) e^{iku}, -(R u')' / (r^2 R) + k^2 u / R^2 = lambda u with R = 1 + r cos v."""
-    n = 255
-    v = 2 * np.pi * np.arange(n) / n
-    wave = np.fft.fftfreq(n, 1 / n)
-    derive = np.real(np.fft.ifft(1j * wave[:, None] * np.fft.fft(np.eye(n), axis=0), axis=0))
-    ring = 1 + r * np.cos(v)
-    stiff = derive.T @ (ring[:, None] * derive) / r**2
-    values = []
-    for k in range(6):
-        both = scipy.linalg.eigh(stiff + np.diag(k**2 / ring), np.diag(ring), eigvals_only=True)
-        values += list(both[1:8]) if k == 0 else 2 * list(both[:8])
-    return np.sort([0.0, *values])
 
 
 class Doubled(DifferentiableBasis):

@@ -131,3 +131,27 @@ def test_the_klein_quartic_is_built_in(orbiframe):
     found = json.loads(orbiframe("group", "klein-quartic", "--json").out)
     assert found["surface"]["name"] == "genus 3"
     assert found["vertices"] == 2
+
+
+def test_errors_stand_in_the_text_as_in_the_numbers(orbiframe):
+    lines = orbiframe("group", "*2222", "--spectrum", 2, "--degree", 6).out.splitlines()
+    told = json.loads(orbiframe("group", "*2222", "--spectrum", 2, "--degree", 6, "--json").out)["spectrum"][1]
+    assert lines[-1].split()[-2:] == ["error", f"{told['error']:.1e}"]
+    assert abs(float(lines[-1].split()[0]) - np.pi**2) < 10 * told["error"]
+    fine = json.loads(orbiframe("group", "*2222", "--spectrum", 2, "--tolerance", 1e-11, "--json").out)["spectrum"][1]
+    assert fine["error"] <= 1e-11 * np.pi**2 < told["error"]
+    assert abs(fine["value"] - np.pi**2) <= fine["error"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--degree", "6"], "belongs to a spectrum"),
+        (["--spectrum", "2", "--degree", "7"], "even degree from 4 to 14"),
+        (["--spectrum", "2", "--tolerance", "0"], "between 0 and 1"),
+    ],
+)
+def test_options_of_spectra_that_cannot_be_are_refused(orbiframe, arguments, said):
+    ran = orbiframe("group", "*2222", *arguments)
+    assert ran.status == 2
+    assert said in ran.err
