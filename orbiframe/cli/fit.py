@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import shlex
 import time
 from pathlib import Path
@@ -41,6 +42,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=200")
     add("--group", metavar="NAME", help="a named group, such as regular-polygon; else that of the mesh (group.method)")
     add("--map", metavar="NAME", help="the map to X/H, such as equivariant (map.method)")
+    add(
+        "--like",
+        metavar="FILE",
+        type=Path,
+        help="the map of a saved surface, for its mesh moved or cut finer (map.like)",
+    )
     add("--basis", metavar="NAME", help="the functions, such as ps6 or gaussian (basis.name)")
     add("--data", metavar="MEANS", help="what the mesh means: smooth, semi-smooth or facets; default auto (data.means)")
     add(
@@ -199,6 +206,7 @@ def overrides(args: argparse.Namespace) -> list[str]:
     named = {
         "group.method": args.group,
         "map.method": args.map,
+        "map.like": None if args.like is None else json.dumps(str(args.like)),
         "basis.name": args.basis,
         "shape.method": args.shape,
         "basis.size": args.size,
@@ -237,7 +245,7 @@ def _require_textures(args: argparse.Namespace, kind: str, registry: Registry) -
 def _require_destinations(args: argparse.Namespace, config: Config, registry: Registry) -> None:
     outputs = {"-o": args.output, "--report": args.report, "--save": args.save}
     plugins = {f"the plugin {path}": path for path in config.plugins}
-    require_apart(outputs, {"the input": args.mesh, "--config": args.config, **plugins})
+    require_apart(outputs, {"the input": args.mesh, "--config": args.config, "--like": args.like, **plugins})
     kind = _kind(args, config, registry)
     require_destination(args.output, registry, args.format, kind=kind)
     if config.output.uv:

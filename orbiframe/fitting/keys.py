@@ -48,6 +48,10 @@ _BOUNDARY_MEANING = (
     "double, with a second copy of mesh and strip, for long tubes; auto takes double for annuli and Möbius bands, "
     "else collar"
 )
+_LIKE_MEANING = (
+    "a saved surface, relative to this file, whose map is taken over, for its mesh moved or cut finer; if not given, a "
+    "map is made"
+)
 _RESULT_MEANINGS = {
     "data.means": "what the mesh means: facets, the polyhedron is the truth; smooth, its vertices lie on a smooth"
     " surface; semi-smooth, so they do where facets are curved; auto decides by the share of its "
@@ -93,6 +97,8 @@ def config_keys(registry: Registry) -> Iterator[ConfigKey]:
             yield from _step_keys(table, registry)
             if table == "mesh":
                 yield ConfigKey("mesh", "boundary", Boundary, "error", _BOUNDARY_MEANING)
+            if table == "map":
+                yield ConfigKey("map", "like", str, None, _LIKE_MEANING)
         else:
             yield from _result_keys(table, Data if table == "data" else Output)
 

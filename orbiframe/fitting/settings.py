@@ -17,6 +17,7 @@ SHORT = {
     "max_error": ("output", "max_error"),
     "refine": ("output", "refine"),
     "boundary": ("mesh", "boundary"),
+    "like": ("map", "like"),
 }
 _SELECTORS = {table: selector for table, (_, selector, _) in STEPS.items()} | {"data": "means"}
 _FAST: dict[str, dict[str, Any]] = {"fitter": {"name": "least-squares"}, "data": {"lift": False}}
@@ -25,9 +26,9 @@ _FAST: dict[str, dict[str, Any]] = {"fitter": {"name": "least-squares"}, "data":
 def configured(config: Config | None, settings: Mapping[str, Any]) -> Config:
     """A configuration, by default that of an empty file, with other settings.
 
-    settings: `size`, `tolerance`, `max_error`, `refine` and `boundary`; a table by its name, `basis="ps2"` for the
-    component that it names or `basis={"name": "ps2", "size": 300}` for several keys; `fast=True` for the linear fit on
-    one map. None leaves a setting as it is. Raises UsageError for an unknown keyword, ConfigError for a value of a
+    settings: `size`, `tolerance`, `max_error`, `refine`, `boundary` and `like`; a table by its name, `basis="ps2"` for
+    the component that it names or `basis={"name": "ps2", "size": 300}` for several keys; `fast=True` for the linear
+    fit on one map. None leaves a setting as it is. Raises UsageError for an unknown keyword, ConfigError for a value of a
     wrong type.
     """
     given = {key: value for key, value in settings.items() if value is not None}
@@ -48,6 +49,8 @@ def _tables(config: Config) -> dict[str, dict[str, Any]]:
         table: {_SELECTORS[table]: step.name, **step.options} for table, step in config.steps.items()
     }
     steps["mesh"]["boundary"] = config.boundary
+    if config.like is not None:
+        steps["map"]["like"] = str(config.like)
     rest = {"output": asdict(config.output), "data": asdict(config.data)}
     return steps | {table: {k: v for k, v in keys.items() if v is not None} for table, keys in rest.items()}
 
