@@ -33,19 +33,25 @@ class Step:
         return self.name in OPEN_NAMES
 
 
+# A coefficient that is moved by hand.
+Moved = tuple[Annotated[int, Ge(0)], float, float, float]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Output:
     """What to make of the surface.
 
     refine: every triangle of the mesh becomes refine^2 triangles, None for as many as a fine picture needs; tolerance
     and max_error: the largest root mean square and the largest distance allowed, relative to the diagonal of the
-    bounding box, None for a fixed size; uv: whether the mesh gets texture coordinates.
+    bounding box, None for a fixed size; uv: whether the mesh gets texture coordinates; moved: coefficients moved by
+    hand after the fit, each as the number of its function and x, y, z in lengths of the mesh.
     """
 
     refine: Annotated[int, Ge(1)] | None = None
     tolerance: Annotated[float, Gt(0)] | None = None
     max_error: Annotated[float, Gt(0)] | None = None
     uv: bool = False
+    moved: tuple[Moved, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -69,6 +69,8 @@ _RESULT_MEANINGS = {
     "reached",
     "output.uv": "the mesh gets texture coordinates: X/H is cut open and laid into the unit square, for .obj, .gltf "
     "and .glb",
+    "output.moved": "coefficients moved by hand after the fit: lists of the number of a function and x, y, z in "
+    "lengths of the mesh, as `orbiframe edit` writes them",
     "output.max_error": "largest error anywhere, likewise; both may be given",
 }
 PLUGINS_MEANING = "Python files with components, relative to this file"

@@ -26,6 +26,7 @@ from orbiframe.fitting.report import report
 from orbiframe.fitting.settings import configured
 from orbiframe.fitting.stages import Progress, Stages
 from orbiframe.fitting.told import told
+from orbiframe.functions.samples import Samples
 from orbiframe.meshes.defects import require_closed_surface
 from orbiframe.meshes.foreign_meshes import polyhedron_of
 from orbiframe.meshes.orientation import oriented
@@ -43,6 +44,7 @@ class Result(GivenBack):
     """What a fit returns: the surface, a mesh on it with normals, and the report of all steps as plain data.
 
     input: the mesh, oriented, all of whose vertices are in faces; its triangles are `surface.refinement.coarse`.
+    samples: what was fitted, of a mesh of unit size at the origin.
 
     >>> from orbiframe import fit
     >>> result = fit("dataset:sphere", size=60)
@@ -57,6 +59,7 @@ class Result(GivenBack):
     output: Polyhedron
     report: dict[str, Any]
     input: Polyhedron
+    samples: Samples
 
 
 def fit(
@@ -117,7 +120,7 @@ def _fitted(mesh: object, config: Config, stages: Stages, share: float, like: Co
     require_told_by_ends(output, surface_type)
     inspection = stages("inspection", inspected, surface, output, config.output.refine is None)
     summary = report(surface, surface_type, mapping, config, found, output, inspection, stages.seconds)
-    return Result(surface, output, summary, placed)
+    return Result(surface, output, summary, placed, found.samples)
 
 
 def _tessellated(surface: OrbifoldSurface, output: Output, wanted: float) -> Polyhedron:

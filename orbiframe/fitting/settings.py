@@ -26,9 +26,9 @@ _FAST: dict[str, dict[str, Any]] = {"fitter": {"name": "least-squares"}, "data":
 def configured(config: Config | None, settings: Mapping[str, Any]) -> Config:
     """A configuration, by default that of an empty file, with other settings.
 
-    settings: `size`, `tolerance`, `max_error`, `refine`, `boundary` and `like`; a table by its name, `basis="ps2"` for
-    the component that it names or `basis={"name": "ps2", "size": 300}` for several keys; `fast=True` for the linear
-    fit on one map. None leaves a setting as it is. Raises UsageError for an unknown keyword, ConfigError for a value of a
+    settings: `size`, `tolerance`, `max_error`, `refine`, `boundary`, `like`; a table by its name, `basis="ps2"` for
+    the component that it names or `basis={"name": "ps2", "size": 300}` for several keys; `fast=True` for the linear fit
+    on one map. None leaves a setting as it is. Raises UsageError for an unknown keyword, ConfigError for a value of a
     wrong type.
     """
     given = {key: value for key, value in settings.items() if value is not None}

@@ -60,7 +60,8 @@ def _write(args: argparse.Namespace, config: object, registry: Registry) -> int:
 
 def _serve(args: argparse.Namespace, config: object, registry: Registry) -> int:
     from orbiframe import Config
-    from orbiframe_viewer.server import Session, address, serve
+    from orbiframe_viewer.server import address, serve
+    from orbiframe_viewer.session import Session
     from orbiframe_viewer.shown_file import scenes_of
 
     assert isinstance(config, Config)
