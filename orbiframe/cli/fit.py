@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from orbiframe.cli.boundary import add_boundary
 from orbiframe.cli.exports import export, export_options, require_known, size_of
-from orbiframe.cli.repairs import add_repairs, repaired, repairs_asked
 from orbiframe.cli.report import json_text, summary, warnings_of, write_report
 from orbiframe.cli.speech import say
 from orbiframe.components.registry import Registry
@@ -19,6 +18,7 @@ from orbiframe.errors import UsageError
 from orbiframe.files.destination import require_destination, require_textures
 from orbiframe.files.folder import require_folder
 from orbiframe.files.outputs import require_apart, require_output
+from orbiframe.files.repair_options import add_repairs, repaired, repairs_asked
 
 if TYPE_CHECKING:
     from orbiframe.fitting.config import Config
@@ -198,7 +198,7 @@ def _repaired(args: argparse.Namespace, config: Config, registry: Registry) -> P
 
     format = None if config.mesh.open else config.mesh.name
     mesh = gate.read(args.mesh, registry, format=format, degenerate=args.drop_degenerate)
-    return repaired(mesh, args, quiet=args.quiet)
+    return repaired(mesh, args, None if args.quiet else say)
 
 
 def overrides(args: argparse.Namespace) -> list[str]:

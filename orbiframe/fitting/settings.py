@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import Any
 
 from orbiframe.components.suggestion import did_you_mean
 from orbiframe.errors import UsageError
 from orbiframe.fitting.config import STEPS, TABLES, Config
+from orbiframe.fitting.written_config import tables_of
 
 # The keywords that are no tables: table and key of each. They are called as on the command line.
 SHORT = {
@@ -35,24 +36,12 @@ def configured(config: Config | None, settings: Mapping[str, Any]) -> Config:
     if not given:
         return Config.from_tables({}) if config is None else config
     base = Config.from_tables({}) if config is None else config
-    tables, places = _tables(base), dict(base.places)
+    tables, places = tables_of(base), dict(base.places)
     for keyword, value in given.items():
         for table, keys in _changes(keyword, value).items():
             tables[table] |= keys
             places |= {f"{table}.{key}": f"fit({keyword}={value!r})" for key in keys}
     return replace(Config.from_tables(tables, places=places), plugins=base.plugins)
-
-
-def _tables(config: Config) -> dict[str, dict[str, Any]]:
-    """The tables that a file of this configuration would have."""
-    steps: dict[str, dict[str, Any]] = {
-        table: {_SELECTORS[table]: step.name, **step.options} for table, step in config.steps.items()
-    }
-    steps["mesh"]["boundary"] = config.boundary
-    if config.like is not None:
-        steps["map"]["like"] = str(config.like)
-    rest = {"output": asdict(config.output), "data": asdict(config.data)}
-    return steps | {table: {k: v for k, v in keys.items() if v is not None} for table, keys in rest.items()}
 
 
 def _changes(keyword: str, value: Any) -> dict[str, dict[str, Any]]:
