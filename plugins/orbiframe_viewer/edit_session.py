@@ -47,7 +47,7 @@ class EditSession(Page):
         self.history: History | None = None
         self.ended = False
         self._changed = threading.Condition()
-        self._picture = self._shape = self._revision = 0
+        self._picture = self._shape = self._fits = 0
         self._stages: list[list[Any]] = []
         self._working, self._saving = True, False
         self._said, self._error = "", ""
@@ -124,10 +124,8 @@ class EditSession(Page):
             assert self.history is not None
             if self.history.now is draft:
                 self.history.correct(found.draft)
-            self.fit = found
-            self._shape += found.display is not before.display or before.result.surface.basis.size != len(
-                found.controls
-            )
+            self.fit, self._fits = found, self._fits + 1
+            self._shape += found.display is not before.display or not np.array_equal(found.controls, before.controls)
             self._picture += 1
             self._working = False
             self._said = _told(found, time.perf_counter() - start)
@@ -175,10 +173,12 @@ class EditSession(Page):
                 "said": self._said,
                 "picture": self._picture,
                 "shape": self._shape,
+                "fits": self._fits,
             }
             if self.history is not None and self.fit is not None:
                 draft = self.history.now
                 found |= {
+                    "moved": len(draft.moved),
                     "undo": self.history.undoable,
                     "redo": self.history.redoable,
                     "unsaved": self.history.unsaved,
@@ -251,6 +251,8 @@ class EditSession(Page):
             self._add(draft.with_vertex(_index(body["vertex"], len(draft.vertices)), way))
         else:
             number = _index(body["control"], len(self.fit.controls))
+            if not self._is_fitted(draft):
+                raise ValueError("the functions are being made anew; wait for the fit")
             self._add(draft.with_coefficient(number, way / self.fit.peaks[number]))
 
     def _set(self, body: dict[str, Any]) -> None:

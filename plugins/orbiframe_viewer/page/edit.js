@@ -1,6 +1,6 @@
 "use strict";
 (() => {
-  const { RISING, CLAY, $, decoded, colourOf, Pane, material, tints, clear, pairs, failed, valueOf } = Panes;
+  const { WARM, CLAY, $, decoded, colourOf, Pane, material, tints, clear, pairs, failed, valueOf } = Panes;
   const told = $("told");
   const shown = ["what", "step", "surface", "edges", "input", "influence", "zebra"];
   const kept = Panes.memory.load();
@@ -25,12 +25,12 @@
 
   const ask = async (name) => { const found = await fetch(name); if (!found.ok) throw new Error(await found.text()); return found; };
   const send = async (name, body) => {
-    try {
-      const found = await (await fetch(name, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) })).json();
-      if (found.error && found.ready === undefined) { say(found.error, true); return null; }
-      await heard(found);
-      return found;
-    } catch { end(); return null; }
+    let found;
+    try { found = await (await fetch(name, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) })).json(); }
+    catch { end(); return null; }
+    if (found.error && found.ready === undefined) { say(found.error, true); return null; }
+    await heard(found);
+    return found;
   };
   const end = () => { ended = true; failed("the command that served this page has ended; what was not saved lies in files whose names it told"); };
   const say = (words, wrong) => { told.textContent = words; told.classList.toggle("error", Boolean(wrong)); };
@@ -76,8 +76,10 @@
   };
   const poll = async () => {
     if (ended) return;
-    try { await heard(await (await ask("state.json")).json()); } catch { return end(); }
-    if (document.body.dataset.state !== "failed") setTimeout(poll, state.ready && !state.working ? 250 : 150);
+    let found;
+    try { found = await (await ask("state.json")).json(); } catch { return end(); }
+    try { await heard(found); }
+    finally { if (document.body.dataset.state !== "failed") setTimeout(poll, state.ready && !state.working ? 250 : 150); }
   };
 
   // ---- the picture ----
@@ -169,7 +171,7 @@
     for (let k = 0; k < n; k++) {
       const here = { kind: kind(), number: k }, now = same(here, chosen), near = same(here, hovered);
       color.array.set(now ? [0.95, 0.2, 0.1] : near ? [0.98, 0.6, 0.1] : [0.72, 0.27, 0.04], 3 * k);
-      big.array[k] = size * (now || near ? 15 : n > 400 ? 7 : 10);
+      big.array[k] = size * (now || near ? 15 : n > 1500 ? 4 : n > 120 ? 7 : 10);
     }
     for (const each of [position, color, big]) each.needsUpdate = true;
   };
@@ -180,7 +182,7 @@
     let high = 0;
     if (column) for (let i = 0; i < column.length; i++) high = Math.max(high, Math.abs(column[i]));
     for (let i = 0; i < tint.count; i++) {
-      const colour = column ? colourOf(RISING, Math.abs(column[i]) / (high || 1)) : CLAY;
+      const colour = column ? colourOf(WARM, Math.abs(column[i]) / (high || 1)) : CLAY;
       for (let j = 0; j < 3; j++) tint.array[3 * i + j] = colour[j] / 255;
     }
     tint.needsUpdate = true;

@@ -4,6 +4,7 @@ const Panes = (() => {
   const RISING = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
   const DIVERGING = [[11, 79, 138], [120, 170, 205], [214, 217, 220], [230, 165, 110], [184, 69, 10]];
   const CLAY = [176, 196, 216];
+  const WARM = [CLAY, [196, 205, 170], [243, 214, 95], [238, 140, 45], [200, 45, 20]];
   const $ = (id) => document.getElementById(id);
   const decoded = (text, kind) => {
     const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -207,6 +208,6 @@ const Panes = (() => {
   };
   const failed = (words) => { $("told").classList.add("error"); $("told").textContent = words; document.body.dataset.state = "failed"; };
 
-  return { RISING, DIVERGING, CLAY, $, decoded, floats, colourOf, Pane, cornersOf, weightsOf, material, lines, tints, clear, pairs,
+  return { RISING, DIVERGING, CLAY, WARM, $, decoded, floats, colourOf, Pane, cornersOf, weightsOf, material, lines, tints, clear, pairs,
     buildPlane, views, paintPlane, memory, valueOf, viewOf, recall, screenshot, failed };
 })();
