@@ -38,9 +38,9 @@ class Display:
 
     @classmethod
     def of(cls, surface: OrbifoldSurface, mesh: Polyhedron) -> Display:
-        """About 16,000 points, and the images of the edges of the mesh."""
+        """At least 16,000 points, and the images of the edges of the mesh."""
         flat = surface.triangulation
-        density = max(1, round(math.sqrt(POINTS / len(flat.points))))
+        density = max(1, math.ceil(math.sqrt(POINTS / len(flat.points))))
         fine = surface.tessellation(density, bisected=True)
         whole = fine.mesh.face_count == density**2 * len(flat.own_faces)
         edges, curves = _curves(surface, mesh, len(fine.points.patch))

@@ -53,6 +53,7 @@ class EditSession(Page):
         self._said, self._error = "", ""
         self._middle, self._scale = np.zeros(3), 1.0
         self._failed: Draft | None = None
+        self._wanted: Draft | None = None
 
     # ---- the beginning ----
 
@@ -114,6 +115,8 @@ class EditSession(Page):
         try:
             found = edited_fit(self.mesh, draft, self.base, self.registry, self.stage, before)
         except Superseded:
+            with self._changed:
+                self._working = False
             return
         except Exception as error:
             with self._changed:

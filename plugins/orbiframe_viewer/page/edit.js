@@ -353,13 +353,12 @@
   };
 
   const begin = () => {
-    const link = (hit, pane) => {
+    const link = (hit) => {
       for (const each of [space, plane]) each.dot.visible = Boolean(hit && each.mesh && !drag && !hovered);
       if (hit && own) {
         space.dot.position.copy(space.at(hit.face, hit.weights)); space.dot.scale.setScalar(0.009);
         if (plane.mesh) { plane.dot.position.copy(plane.at(hit.face, hit.weights)); plane.dot.scale.setScalar(0.016 * (plane.half || 1) / plane.camera.zoom); }
       }
-      if (!hit && pane === space && !drag) hover(null);
       space.draw(); plane.draw();
     };
     const both = { changed: remember, hovered: link };
@@ -370,6 +369,7 @@
     chosen = kept.chosen || null;
     const pane = space.canvas.parentElement;
     for (const [name, act_] of [["pointerdown", press], ["pointermove", move], ["pointerup", drop], ["pointercancel", cancel], ["keydown", key]]) pane.addEventListener(name, act_, { capture: true });
+    space.canvas.addEventListener("pointerleave", () => { if (!drag && own) hover(null); });
     space.canvas.addEventListener("blur", () => { leaving = false; finishKeys(); if (scene) words(); });
     space.canvas.addEventListener("focus", () => { leaving = false; if (own) words(); });
     addEventListener("keydown", anywhere);
