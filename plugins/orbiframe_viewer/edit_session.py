@@ -329,8 +329,8 @@ def _told(found: EditedFit, seconds: float | None) -> str:
     part = found.result.report["fit"]
     after = "" if seconds is None else f" in {seconds:.1f} s"
     first = (
-        f"fitted{after} by {part['fitter']}: {part['size']} functions of {part['basis']}; distance to the mesh, in "
-        f"diagonals: rms {part['rms']:.1e}, largest {part['max']:.1e}"
+        f"fitted{after} by {part['fitter']}: {part['size']} functions of {part['basis']}, rms {part['rms']:.1e}, "
+        f"largest {part['max']:.1e} of the diagonal"
     )
     return "\n".join((first, *found.notes))
 
