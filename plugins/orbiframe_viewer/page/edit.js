@@ -113,9 +113,13 @@
     space.things.add(...Object.values(parts));
     $("plane").hidden = !scene.xh;
     if (scene.xh) Panes.buildPlane(plane, scene.xh);
-    if (!space.looked) { Panes.views(space, plane, scene.xh); Panes.recall(space, kept.space); Panes.recall(plane, kept.plane); space.looked = true; }
+    if (!space.looked) { home(); Panes.recall(space, kept.space); Panes.recall(plane, kept.plane); space.looked = true; }
     else plane.fit();
     document.body.dataset.state = "ready";
+  };
+  const home = () => { // a little farther away than a picture alone needs: the line below takes room
+    Panes.views(space, plane, scene.xh);
+    space.camera.position.multiplyScalar(1.15); space.orbit.update();
   };
   const split = (numbers) => {
     const v = 3 * scene.vertices, n = 3 * scene.points, jets = (numbers.length - v) / n;
@@ -376,7 +380,7 @@
     addEventListener("beforeunload", (event) => { if (state?.unsaved && !ended) { event.preventDefault(); event.returnValue = ""; } });
     for (const id of shown) $(id).addEventListener("input", () => { if (id === "what") choose(null); if (own) look(); });
     for (const id of ["undo", "redo", "save"]) $(id).addEventListener("click", () => act(id));
-    $("home").addEventListener("click", () => { Panes.views(space, plane, scene?.xh); remember(); });
+    $("home").addEventListener("click", () => { if (scene) home(); remember(); });
     $("shot").addEventListener("click", () => Panes.screenshot([space, plane].filter((each) => each.mesh), scene.name, say));
     for (const id of ["bar", "fit"]) $(id).addEventListener("submit", (event) => event.preventDefault());
     wireFit();
