@@ -138,12 +138,16 @@ def load_surface(path: str | Path, registry: Components | None = None) -> Orbifo
 
 
 class SurfaceMap(NamedTuple):
-    """The map of a saved surface: of a refined mesh of unit size, and where and how large that mesh is in space."""
+    """The map of a saved surface: of a refined mesh of unit size, and where and how large that mesh is in space.
+
+    size: the number of functions that it was made for, as far as they have an option of that name.
+    """
 
     triangulation: Triangulation
     refinement: Bisection
     origin: NDArray[np.float64]
     scale: float
+    size: int | None
 
 
 def load_surface_map(path: Path, registry: Components) -> SurfaceMap:
@@ -275,7 +279,8 @@ def _map(arrays: Arrays, about: About, registry: Components) -> SurfaceMap:
         require(np.isfinite(arrays[name]), name, "numbers are finite")
     require(scale > 0, "scale", "it is positive")
     _require_sums(arrays, about)
-    return SurfaceMap(triangulation, refinement, origin, scale)
+    size = about["options"].get("size")
+    return SurfaceMap(triangulation, refinement, origin, scale, size if isinstance(size, int) else None)
 
 
 def _basis(make: Any, name: str, triangulation: Triangulation, options: Mapping[str, Any], path: Path) -> Any:

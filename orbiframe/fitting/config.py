@@ -140,8 +140,6 @@ class Config:
     def parsed(cls, path: Path | None = None, overrides: Overrides = ()) -> Config:
         """The configuration as `load` reads it; names and options are checked when `checked` or `fit` get it."""
         tables, places = ({}, {}) if path is None else read_tables(path)
-        if path is not None:
-            tables = _beside(tables, path.parent)
         for table, key, value, place in override_items(overrides):
             places[f"{table}.{key}"] = place
             require_table(table, TABLES, {table: place})
@@ -285,12 +283,6 @@ def _require_creased(name: str, registry: Registry, places: Mapping[str, str]) -
         f"{place_of('basis.name', places)}the functions '{name}' keep no creases (data.creases); those that do: "
         f"{', '.join(known)}"
     )
-
-
-def _beside(tables: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """The tables of a file, with the saved surface that they name relative to its folder."""
-    like = tables["map"].get("like") if isinstance(tables.get("map"), Mapping) else None
-    return tables if not isinstance(like, str) else tables | {"map": {**tables["map"], "like": str(folder / like)}}
 
 
 def _require_no_other_map(config: Config) -> None:

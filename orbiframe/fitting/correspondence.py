@@ -47,30 +47,35 @@ class Carried(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Correspondence:
-    """The map of a refined mesh of unit size to X/H, where and how large that mesh is in space, and its name."""
+    """The map of a refined mesh of unit size to X/H, where and how large that mesh is in space, and its name.
+
+    size: the number of functions that creases were placed for, where there are some.
+    """
 
     triangulation: Triangulation
     refinement: Bisection
     origin: Floats
     scale: float
+    size: int | None
     name: str
 
     @classmethod
     def of_file(cls, path: Path, registry: Registry) -> Correspondence:
         """That of a saved surface. Raises FormatError for what is none."""
-        return cls._plain(*load_surface_map(path, registry), path.name)
+        return cls(*load_surface_map(path, registry), path.name)
 
     @classmethod
     def of_surface(cls, surface: OrbifoldSurface, name: str = "the surface") -> Correspondence:
         """That of a surface."""
-        return cls._plain(surface.triangulation, surface.refinement, surface.origin, surface.scale, name)
+        size = surface.basis_options.get("size")
+        return cls(surface.triangulation, surface.refinement, surface.origin, surface.scale, size, name)
 
-    @classmethod
-    def _plain(
-        cls, triangulation: Triangulation, refinement: Bisection, origin: Floats, scale: float, name: str
-    ) -> Correspondence:
-        """Creases are found anew."""
-        return cls(replace(triangulation, crease=None, sites=None), refinement, origin, scale, name)
+    def creased(self, mapped: Triangulation, sharp: NDArray[np.bool_], size: int) -> Triangulation | None:
+        """The map of the same triangles with the creases and sites of the old one; None where they are others."""
+        crease, sites = self.triangulation.crease, self.triangulation.sites
+        if crease is None or size != self.size or mapped.points is not self.triangulation.points:
+            return None
+        return replace(mapped, crease=crease, sites=sites) if np.array_equal(crease, sharp) else None
 
     @cached_property
     def own_mesh(self) -> Polyhedron:
@@ -112,6 +117,11 @@ class Correspondence:
         vertices[:count] = triangles.vertices
         return coarse.with_vertices(vertices), self.own
 
+    @property
+    def _plain(self) -> Triangulation:
+        """The map without creases."""
+        return replace(self.triangulation, crease=None, sites=None)
+
     def serves(self, triangles: Polyhedron, least: int) -> bool:
         """Whether triangles are the old ones, and refined to about so many vertices at least."""
         enough = 2 * len(self.refinement.polyhedron.vertices) >= least
@@ -123,7 +133,7 @@ class Correspondence:
         steps = None if log is None else EdgeLog(triangles, log.halfedge, log.crossing, log.halved)
         fine = old.polyhedron.with_vertices(_fine_vertices(old, triangles, steps))
         refinement = Bisection(triangles, fine, old.side, old.child, steps)
-        return self._verified(Carried(refinement, replace(self.triangulation, polyhedron=fine), True, None))
+        return self._verified(Carried(refinement, replace(self._plain, polyhedron=fine), True, None))
 
     def refined(self, refinement: Bisection, origin: Floats, scale: float) -> Carried:
         """The map of a mesh that is cut otherwise, with the vertices of its refinement where they are nearest."""
@@ -144,7 +154,7 @@ class Correspondence:
                     f"from it, at most {_FAR:g} is near"
                 )
         try:
-            found = carried(self.triangulation, fine, face, barycentric)
+            found = carried(self._plain, fine, face, barycentric)
         except MapError as error:
             raise self._no_use(f"it is not beside the old mesh in one piece: {error}") from error
         return self._verified(Carried(refinement, found, False, distance))

@@ -150,7 +150,9 @@ class Mapping:
 
     def creased(self, mapped: Mapped, size: int, unknowns: tuple[int, int, int]) -> Mapped:
         """The map with creases where the mesh is sharp, for about `size` functions; see `data.creases`."""
-        found = creased(mapped.triangulation, self._sharp(mapped.refinement.polyhedron), size, unknowns)
+        sharp = self._sharp(mapped.refinement.polyhedron)
+        kept = None if self.like is None else self.like.creased(mapped.triangulation, sharp, size)
+        found = creased(mapped.triangulation, sharp, size, unknowns) if kept is None else kept
         unshaped = mapped.first.points is mapped.triangulation.points
         return mapped._replace(first=found if unshaped else mapped.first, triangulation=found)
 

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from edits import DATASETS, REGISTRY, base_of, first, session_of
+from open_shapes import cylinder
 from orbiframe_viewer.edit_session import EditSession
 from orbiframe_viewer.edited_fit import edited_fit
 from orbiframe_viewer.first_fit import first_fit
@@ -135,7 +136,13 @@ def test_the_files_make_the_surface_again(at_work, orbiframe, tmp_path, monkeypa
 
 @pytest.mark.long
 @pytest.mark.parametrize(
-    ("name", "options"), [("torus", ()), ("plate_genus3", ("basis.name=ps2",)), ("sphere", ("data.means=smooth",))]
+    ("name", "options"),
+    [
+        ("torus", ()),
+        ("plate_genus3", ("basis.name=ps2",)),
+        ("sphere", ("data.means=smooth",)),
+        ("plate_genus2_coarse", ("data.creases=30",)),
+    ],
 )
 def test_smooth_meshes_and_other_functions_are_made_again_too(at_work, tmp_path, name, options):
     session = at_work(session_of(first(name, 80, *options), tmp_path / "shape.off", *options))
@@ -147,6 +154,44 @@ def test_smooth_meshes_and_other_functions_are_made_again_too(at_work, tmp_path,
     points = session.fit.display.points
     apart = found.surface.evaluate(points) - session.fit.surface.evaluate(points)
     assert np.abs(apart).max() <= 1e-9 * found.surface.scale
+
+
+@pytest.mark.long
+def test_a_mesh_with_a_boundary_is_edited_too(at_work, tmp_path):
+    base = base_of(100, "mesh.boundary=auto")
+    found = first_fit(cylinder(), None, base, REGISTRY, quiet)[1]
+    session = at_work(session_of(found, tmp_path / "tube.off", "mesh.boundary=auto"))
+    sent(session, "move", vertex=2, by=[0.05, 0.02, 0.0])
+    settled(session)
+    sent(session, "save")
+    settled(session)
+    again = fit(tmp_path / "tube.off", Config.load(tmp_path / "tube.toml"), REGISTRY, progress=False)
+    points = session.fit.display.points
+    assert np.abs(again.surface.evaluate(points) - session.fit.surface.evaluate(points)).max() <= 1e-9
+    assert session.fit.result.report["boundary"]["loops"] == 2
+
+
+def test_the_command_serves_until_it_is_interrupted(orbiframe, tmp_path, monkeypatch):
+    """Nothing is changed, so that nothing is written."""
+    from orbiframe_viewer import edit_command
+
+    monkeypatch.chdir(tmp_path)
+    opened: list[str] = []
+
+    def interrupted(_: float) -> None:
+        import urllib.request
+
+        with urllib.request.urlopen(f"{opened[0]}state.json", timeout=10) as answer:
+            assert json.loads(answer.read())["fitted"]
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(edit_command, "_open", opened.append)
+    monkeypatch.setattr(edit_command.time, "sleep", interrupted)
+    ran = orbiframe("edit", DATASETS / "torus.off", "--set", "basis.size=60", "--set", "fitter.name=least-squares")
+    assert ran.status == 0, ran.err
+    assert ran.out.splitlines()[0] == opened[0]
+    assert ran.out.splitlines()[1] == "the page is served until Ctrl-C; it saves torus-edited.off"
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_session_without_a_step_saves_what_makes_its_own_map(at_work, tmp_path):
