@@ -21,8 +21,8 @@ def compiled(
     """Compile a function to machine code when it is first called, and keep the code for the next process.
 
     The kept code is used again only while nothing has changed that it was made of: the function, all compiled functions
-    that it calls, all constants that these name. Code needs no array assigned to a slice or row, no sort and no
-    concatenation: each costs seconds at the first run, and a loop costs nothing.
+    that it calls, all constants that these name. While it runs other threads run too. Code needs no array assigned to a
+    slice or row, no sort and no concatenation: each costs seconds at the first run, and a loop costs nothing.
 
     arrays: False for a function that makes no array; it need not count who refers to those that it is given, which
     takes longer than little work with them. may_divide_by_zero: division by zero gives inf or nan as in numpy;
@@ -41,6 +41,7 @@ def compiled(
         "inline": "always" if inline else "never",
         "fastmath": False,
         "forceinline": False,
+        "nogil": True,
         "no_cfunc_wrapper": True,
     }
     return CompiledFunction(function, targetoptions=options)

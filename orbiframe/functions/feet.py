@@ -17,6 +17,9 @@ Bools = NDArray[np.bool_]
 _FLAT = 0.05
 # A target farther away than this share of the longest step may have found the wrong side of a ridge.
 _FAR = 0.1
+# A point that came nearer by less than this share of its distance is at the foot, and so is one whose next step would
+# gain less than that share: a step of length s at distance d gains s^2 / (2 d).
+_GAINED, _GAIN = 1e-6, 1e-8
 # Whether a step minds the curvature of the surface, and how much of it is taken.
 _TRIALS = ((True, 1.0), (False, 1.0), (False, 0.25))
 
@@ -110,8 +113,11 @@ class _Search:
             before, left = self.distance[active], active
             for bent, share in _TRIALS:
                 step = share * foot_step(self.jets[:, left], self.targets[left], self.longest, bent=bent)
+                if bent:
+                    there = self._arrived(left, step)
+                    left, step = left[~there], step[~there]
                 left = left[~self._tried(left, step)]
-            active = active[self.distance[active] < before * (1 - 1e-6)]
+            active = active[self.distance[active] < before * (1 - _GAINED)]
 
     def elsewhere(self, far: Ints) -> Ints:
         """Those of some points that are nearer to their targets at one of eight places about them, and go there."""
@@ -119,6 +125,11 @@ class _Search:
         for step in around(self.jets[:, far], self.longest / 2) if len(far) else ():
             found |= self._tried(far, step)
         return far[found]
+
+    def _arrived(self, active: Ints, step: Floats) -> Bools:
+        """Those of some points that a step of Newton's would bring no nearer that counts."""
+        way = step[:, :1] * self.jets[1, active] + step[:, 1:] * self.jets[2, active]
+        return np.asarray(np.linalg.norm(way, axis=1) <= np.sqrt(2 * _GAIN) * self.distance[active])
 
     def _tried(self, active: Ints, step: Floats) -> Bools:
         """Some of the points moved where that comes nearer; which of them."""

@@ -6,8 +6,9 @@ analytic function, with Hess c = (1 - K c) g in curvature K, so functions of c n
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,12 +19,14 @@ from orbiframe.functions.near_points import near_points
 from orbiframe.meshes.edge_paths import curve_order
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.planes.geometry import Geometry
+from orbiframe.workers.threads import in_threads
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
+Result = TypeVar("Result")
 
 _LEAF = 8  # points in a leaf of the search tree
-_BLOCK = 1 << 15  # rows of a block: bounds the memory of everything computed per pair
+_BLOCK = 1 << 11  # rows of a block: bounds the memory of everything computed per pair, so that it stays in the cache
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +54,27 @@ def reaching_pairs(lifted: LiftedCentres, points: Points, *, slopes: bool = Fals
     seen from there meet a tree of balls over the points, whose test costs no root and no arc function. Points beyond
     the disc of their patch are seen from a nearer one, see `near_points`.
     """
+    return in_blocks(lifted, points, lambda pairs: pairs, slopes=slopes)
+
+
+def in_blocks(
+    lifted: LiftedCentres, points: Points, task: Callable[[Pairs], Result], *, slopes: bool = False
+) -> Iterator[Result]:
+    """What a task makes of each block of `reaching_pairs`, in their order, in several threads at a time."""
     geometry = lifted.orbifold.geometry
     points, turn = near_points(lifted.orbifold, points)
+
+    def done(block: tuple[Images, Ints]) -> Result:
+        images, part = block
+        pairs = _pairs_of_block(geometry, images, lifted.support[images.column], part, points.x[part], slopes)
+        return task(pairs if turn is None or not slopes else _turned(pairs, turn))
+
+    return in_threads(done, _blocks(lifted, points))
+
+
+def _blocks(lifted: LiftedCentres, points: Points) -> Iterator[tuple[Images, Ints]]:
+    """Points of one patch and near each other, by their rows, with the lifts of centres that are seen from there."""
+    geometry = lifted.orbifold.geometry
     order = np.argsort(points.patch, kind="stable")
     patches, first = np.unique(points.patch[order], return_index=True)
     members = np.split(order, first[1:])
@@ -61,8 +83,7 @@ def reaching_pairs(lifted: LiftedCentres, points: Points, *, slopes: bool = Fals
     for unsorted, images in zip(members, lifted.seen_from(patches, radii[patches]), strict=False):
         rows = unsorted[curve_order(points.x[unsorted])]
         for part in np.split(rows, range(_BLOCK, len(rows), _BLOCK)):
-            pairs = _pairs_of_block(geometry, images, lifted.support[images.column], part, points.x[part], slopes)
-            yield pairs if turn is None or not slopes else _turned(pairs, turn)
+            yield images, part
 
 
 def _turned(pairs: Pairs, turn: Floats) -> Pairs:

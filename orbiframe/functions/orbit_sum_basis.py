@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,14 +12,16 @@ from scipy.sparse import csr_array
 
 from orbiframe.errors import FitError
 from orbiframe.functions.basis import JET_KINDS, DifferentiableBasis
-from orbiframe.functions.jet_quotient import divide_jets
 from orbiframe.functions.lifted_centres import LiftedCentres
-from orbiframe.functions.orbit_sum import Pairs, reaching_pairs
+from orbiframe.functions.orbit_sum import Pairs, in_blocks
+from orbiframe.functions.quotient_kernels import merged_counts, put_rows, quotient_rows, quotient_values
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Orbifold
+from orbiframe.workers.threads import in_threads
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
+Result = TypeVar("Result")
 
 
 class OrbitSumBasis(DifferentiableBasis):
@@ -46,41 +50,63 @@ class OrbitSumBasis(DifferentiableBasis):
 
         Order 3 needs f''' from the profile: FitError where it gives none.
         """
-        pairs = reaching_pairs(self._lifted, points, slopes=order > 0)
-        blocks = [self._jets(block, points, order) for block in pairs]
-        return _assemble(blocks, (len(points.patch), self.size), JET_KINDS[order])
+        blocks = list(self._blocks(points, order, lambda block: block))
+        count = np.zeros(len(points.patch), dtype=np.intp)
+        for block in blocks:
+            count[block.pairs.rows] = block.reached
+        start = np.concatenate([[0], np.cumsum(count)])
+        pattern = start.astype(np.int32 if start[-1] < 2**31 else np.int64)
+        column = np.empty(start[-1], dtype=pattern.dtype)
+        # An array for each: one for all would be so large that every use of it asks the system for new memory.
+        jets = [np.empty(start[-1]) for _ in range(JET_KINDS[order])]
 
-    def _jets(self, pairs: Pairs, points: Points, order: int) -> _Block:
-        empty = np.flatnonzero(np.diff(pairs.start) == 0)
-        if len(empty):
-            _uncovered(points, pairs.rows[empty[0]])
-        jets = self._profile_jets(pairs, order)
-        start, column, jets = _sum_lifts(pairs.start, pairs.column, jets)
-        total = np.add.reduceat(jets, start[:-1], axis=1)
-        lost = np.flatnonzero(~(total[0] >= np.finfo(float).tiny))
-        if len(lost):
-            _uncovered(points, pairs.rows[lost[0]])
-        return _Block(pairs.rows, start, column, divide_jets(jets, total, np.diff(start)))
+        def enter(block: _Block) -> None:
+            place, there = np.concatenate([[0], np.cumsum(block.reached)]), start[block.pairs.rows]
+            own = np.empty((len(jets), place[-1]))
+            lost = quotient_rows(*self._described(block), place, there, column, own, np.empty(len(jets)))
+            _require_covered(points, block, lost)
+            for values, target in zip(own, jets, strict=True):
+                put_rows(values, place, there, target)
 
-    def _profile_jets(self, pairs: Pairs, order: int) -> Floats:
-        """The jets of f(c / c_i) from D c and Hess c = (1 - K c) g, 1, 3, 6 or 12 rows, one column per pair."""
-        support = self.support[pairs.column]
-        f, df, ddf, *third = self.profile(pairs.versine / support)
-        if order == 0:
-            return np.array(f)[None]
-        c1, c2 = pairs.slope.T
-        df = df / support
-        if order == 1:
-            return np.stack([f, df * c1, df * c2])
-        ddf = ddf / support**2
-        turn = 1 - self.orbifold.geometry.curvature * pairs.versine
-        trace = df * turn
-        jets = [f, df * c1, df * c2, ddf * c1**2 + trace, ddf * c1 * c2, ddf * c2**2 + trace]
-        if order == 3:
-            bent = ddf * turn
-            drift = bent - self.orbifold.geometry.curvature * df
-            jets += _third_jets(pairs.slope.T, bent, drift, self._third(third) / support**3)
-        return np.stack(jets)
+        for _ in in_threads(enter, blocks):
+            pass
+        return [_matrix(values, column, pattern, self.size) for values in jets]
+
+    def jets(self, points: Points, coefficients: Floats, order: int) -> Floats:
+        """See `DifferentiableBasis`; found without matrices."""
+        given = np.ascontiguousarray(coefficients, dtype=np.float64)
+        values = np.empty((JET_KINDS[order], len(points.patch), given.shape[1]))
+
+        def enter(block: _Block) -> None:
+            width = int(block.reached.max(initial=0))
+            room = np.empty(width, dtype=np.int32), np.empty((len(values), width)), np.empty(len(values))
+            lost = quotient_values(*self._described(block), block.pairs.rows, room, given, values)
+            _require_covered(points, block, lost)
+
+        for _ in self._blocks(points, order, enter):
+            pass
+        return values
+
+    def values(self, points: Points, coefficients: Floats) -> Floats:
+        """See `Basis`; found without a matrix."""
+        return np.asarray(self.jets(points, coefficients, 0)[0])
+
+    def _blocks(self, points: Points, order: int, task: Callable[[_Block], Result]) -> Iterator[Result]:
+        """What a task makes of the pairs of points and lifts, block by block."""
+        return in_blocks(self._lifted, points, lambda pairs: task(self._block(pairs, order)), slopes=order > 0)
+
+    def _block(self, pairs: Pairs, order: int) -> _Block:
+        f, df, ddf, *third = self.profile(pairs.versine / self.support[pairs.column])
+        profile = f, df, ddf, self._third(third) if order == 3 else f
+        count = np.empty(len(pairs.rows), dtype=np.intp)
+        merged_counts(pairs.start, pairs.column, count)
+        return _Block(pairs, tuple(np.ascontiguousarray(part, dtype=np.float64) for part in profile), count)
+
+    def _described(self, block: _Block) -> tuple[Any, ...]:
+        """A block as compiled code takes it: the curvature, the pairs and the profile."""
+        pairs = block.pairs
+        described = pairs.start, pairs.column, pairs.versine, pairs.slope, self.support
+        return float(self.orbifold.geometry.curvature), described, block.profile
 
     def _third(self, given: list[Floats]) -> Floats:
         """f''' from what the profile gives beyond f''."""
@@ -92,69 +118,26 @@ class OrbitSumBasis(DifferentiableBasis):
         )
 
 
-def _third_jets(c: Floats, bent: Floats, drift: Floats, third: Floats) -> list[Floats]:
-    """The derivatives along w = e_k of the Hessian entries u = e_i, v = e_j of f(c); D_w Hess c = -K c_w g, so they are
+class _Block(NamedTuple):
+    """Pairs of points and lifts, f, f', f'' and f''' of each, (p,), and how many functions reach each point, (r,)."""
 
-    f''' c_u c_v c_w + f'' (1 - K c)(c_w <u, v> + c_u <v, w> + c_v <u, w>) - f' K c_w <u, v>.
-
-    c: (2, n), the derivative of the versine; bent: f'' (1 - K c); drift: bent - K f'; third: f'''.
-    """
-    return [
-        third * c[i] * c[j] * c[k] + (i == j) * drift * c[k] + bent * ((j == k) * c[i] + (i == k) * c[j])
-        for k in (0, 1)
-        for i, j in ((0, 0), (0, 1), (1, 1))
-    ]
+    pairs: Pairs
+    profile: tuple[Floats, ...]
+    reached: Ints
 
 
-class _Block:
-    """Rows of a set of sparse matrices with one pattern: rows (r,), start (r + 1,), column (p,), values (m, p)."""
-
-    def __init__(self, rows: Ints, start: Ints, column: Ints, values: Floats) -> None:
-        self.rows, self.values = rows, values
-        self.column = column.astype(np.int32)
-        self.count = np.diff(start)
-
-
-def _uncovered(points: Points, row: int) -> None:
+def _require_covered(points: Points, block: _Block, lost: int) -> None:
+    """Raises FitError where compiled code names a row that no function reaches."""
+    if lost < 0:
+        return
+    row = block.pairs.rows[lost]
     raise FitError(
         f"no function reaches point {row} (patch {points.patch[row]}, x = {points.x[row]}); make the functions wider "
         "(option width or reach) or use more of them (option size)"
     )
 
 
-def _sum_lifts(start: Ints, column: Ints, jets: Floats) -> tuple[Ints, Ints, Floats]:
-    """Add what several lifts of one centre contribute to one point; they stand side by side."""
-    fresh = np.ones(len(column), dtype=np.bool_)
-    fresh[1:] = column[1:] != column[:-1]
-    fresh[start[:-1]] = True
-    if fresh.all():
-        return start, column, jets
-    keep = np.flatnonzero(fresh)
-    return np.searchsorted(keep, start), column[keep], np.add.reduceat(jets, keep, axis=1)
-
-
-def _assemble(blocks: list[_Block], shape: tuple[int, int], kinds: int) -> list[csr_array]:
-    """Sparse matrices with one shared pattern from blocks of their rows."""
-    count = np.zeros(shape[0], dtype=np.intp)
-    for block in blocks:
-        count[block.rows] = block.count
-    start = np.concatenate([[0], np.cumsum(count)])
-    pattern = start.astype(np.int32 if start[-1] < 2**31 else np.int64)
-    places = [_places(start[block.rows], block.count) for block in blocks]
-    column = np.empty(start[-1], dtype=pattern.dtype)
-    for block, place in zip(blocks, places, strict=True):
-        column[place] = block.column
-    matrices = []
-    for kind in range(kinds):
-        values = np.empty(start[-1])
-        for block, place in zip(blocks, places, strict=True):
-            values[place] = block.values[kind]
-        matrix = csr_array((values, column, pattern), shape=shape)
-        matrix.has_sorted_indices = True
-        matrices.append(matrix)
-    return matrices
-
-
-def _places(start: Ints, count: Ints) -> Ints:
-    """start[0], start[0] + 1, ... for count[0] numbers, then the same from start[1] and so on."""
-    return np.arange(count.sum()) + np.repeat(start - np.cumsum(count) + count, count)
+def _matrix(values: Floats, column: NDArray[Any], start: NDArray[Any], size: int) -> csr_array:
+    matrix = csr_array((values, column, start), shape=(len(start) - 1, size))
+    matrix.has_sorted_indices = True
+    return matrix

@@ -6,7 +6,6 @@ number. A process that dies costs nobody else anything: its item is tried once m
 
 from __future__ import annotations
 
-import os
 import pickle
 import queue
 import subprocess
@@ -38,11 +37,6 @@ class Outcome:
     result: Any = None
     error: BaseException | None = None
     lost: str = ""
-
-
-def processors() -> int:
-    """How many processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def work(

@@ -15,6 +15,7 @@ from contextlib import suppress
 from typing import Any, BinaryIO
 
 from orbiframe.compiled import compilation
+from orbiframe.workers.threads import VARIABLE
 
 # The word that a worker says in place of a stage while it compiles.
 COMPILING = "compiling"
@@ -27,6 +28,7 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # an interrupt is for the process that hands out the work
     source, target = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints is no message
+    os.environ.setdefault(VARIABLE, "1")  # the processors are for the other workers
     sys.path[:0] = [entry for entry in pickle.load(source) if entry not in sys.path]
     make, arguments = pickle.load(source)
     task: Task = make(*arguments)

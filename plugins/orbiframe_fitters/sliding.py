@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from orbiframe import Basis, DifferentiableBasis, Fitter, Points, Samples
-from orbiframe.functions import foot_step, moved
+from orbiframe.functions import foot_points, foot_step, moved
+from orbiframe.workers import in_threads
 from orbiframe_fitters.energy import FAIRING, Energy, energy_of, spacing
+from orbiframe_fitters.few_samples import few_samples
 from orbiframe_fitters.gram import Gram
 from orbiframe_fitters.kinks import Kinks
 from orbiframe_fitters.least_squares import chunks, linear_fit, require_not_negative
@@ -33,6 +35,8 @@ _GAIN = 0.97
 _LEAST_STEPS = 4
 # A smooth surface is shrunk to at least so much in one step at every datum: beyond, a limb is being pinched off.
 _LEAST_SHARE = 0.35
+# So many steps of Newton's lead data that were left out so far to their feet.
+_ALL_STEPS = 2
 # Up to so many functions the equations of a step are factored as a whole; of more, iteration takes less time.
 _DIRECT = 200
 
@@ -83,8 +87,13 @@ class Sliding(Fitter):
         first = linear_fit(basis, samples, self.fairing)
         if samples.values.shape[1] != 3 or not isinstance(basis, DifferentiableBasis):
             return first.coefficients
-        slide = _Slide(basis, samples, self._schedules(basis, samples, first.fairing))
-        return slide.from_start(first.coefficients, self.steps)
+        schedules = self._schedules(basis, samples, first.fairing)
+        few = few_samples(basis, samples)
+        slide = _Slide(basis, few, schedules)
+        found = slide.from_start(first.coefficients, self.steps)
+        if few is samples or not self.steps:
+            return found
+        return slide.with_all(found, samples, schedules[min(self.steps, len(schedules)) - 1])
 
     def _schedules(self, basis: Basis, samples: Samples, fairing: float) -> tuple[Schedule, ...]:
         """Those of the order of the energy, or the fairing that is given or that noise asks for."""
@@ -112,7 +121,7 @@ class _Feet:
 
     def under(self, coefficients: Floats, targets: Floats) -> _Feet:
         """The same points on another surface."""
-        jets = np.stack([matrix @ coefficients for matrix in self.matrices])
+        jets = _products(self.matrices, coefficients)
         return _Feet(self.points, self.matrices, jets, targets - jets[0])
 
     def replaced(self, rows: Ints, other: _Feet) -> _Feet:
@@ -185,9 +194,21 @@ class _Slide:
                 break
         return coefficients
 
+    def with_all(self, coefficients: Floats, samples: Samples, schedule: Schedule) -> Floats:
+        """The coefficients after one more step for which all samples count, each once and in no memory but its own."""
+        gram, right = self._empty()
+        longest = _LONGEST_STEP * self.spacing
+        for part, _ in chunks(samples.take(np.flatnonzero(samples.weights > 0))):
+            points, _ = foot_points(self.basis, coefficients, part.points, part.values, longest, _ALL_STEPS)
+            jets = self.basis.jets(points, coefficients, 2)
+            feet = _Feet(points, self.basis.jet_matrices(points, 0), jets, part.values - jets[0])
+            self._enter(gram, right, feet, part, schedule)
+        trial = coefficients + self._solved(gram, right, coefficients, schedule)
+        return coefficients if self._pinched(coefficients, trial) else trial
+
     def _feet(self, points: Points, targets: Floats, coefficients: Floats) -> _Feet:
         matrices = self.basis.jet_matrices(points, 2)
-        jets = np.stack([matrix @ coefficients for matrix in matrices])
+        jets = _products(matrices, coefficients)
         return _Feet(points, matrices, jets, targets - jets[0])
 
     def _under(self, feet: list[_Feet], coefficients: Floats) -> list[_Feet]:
@@ -230,11 +251,24 @@ class _Slide:
 
     def _change(self, feet: list[_Feet], coefficients: Floats, schedule: Schedule) -> Floats:
         """The change of the coefficients by one step of Gauss and Newton."""
-        gram, right = Gram(self.basis.size, 6, self._room), np.zeros((self.basis.size, 3))
+        gram, right = self._empty()
         for found, part in zip(feet, self.data, strict=True):
-            weights, wanted = _linearised(found, part, schedule)
-            gram.add(found.matrices[0], weights)
-            right += found.matrices[0].T @ wanted
+            self._enter(gram, right, found, part, schedule)
+        return self._solved(gram, right, coefficients, schedule)
+
+    def _empty(self) -> tuple[Gram, Floats]:
+        """The equations of a step before any data."""
+        return Gram(self.basis.size, 6, self._room), np.zeros((self.basis.size, 3))
+
+    @staticmethod
+    def _enter(gram: Gram, right: Floats, feet: _Feet, part: Samples, schedule: Schedule) -> None:
+        """Add some data to the equations of a step."""
+        weights, wanted = _linearised(feet, part, schedule)
+        gram.add(feet.matrices[0], weights)
+        right += feet.matrices[0].T @ wanted
+
+    def _solved(self, gram: Gram, right: Floats, coefficients: Floats, schedule: Schedule) -> Floats:
+        """The change of the coefficients by equations in which all data are entered; the rest is added here."""
         if self.kinks is not None:
             weights, wanted = self._smoothed(self.kinks, coefficients)
             gram.add(self.kinks.jump, weights)
@@ -343,6 +377,10 @@ def _joined(rows: list[list[Any]]) -> Floats | csr_array:
     if isinstance(rows[0][0], np.ndarray):
         return np.block(rows)
     return csr_array(scipy.sparse.block_array(rows))
+
+
+def _products(matrices: list[csr_array], coefficients: Floats) -> Floats:
+    return np.stack(list(in_threads(lambda matrix: np.asarray(matrix @ coefficients), matrices)))
 
 
 def _stacked(a: csr_array, b: csr_array) -> csr_array:

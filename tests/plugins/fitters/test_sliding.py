@@ -10,6 +10,7 @@ import reference_surfaces as surfaces
 from fitted import REGISTRY, grid
 from orbiframe_bases.gaussian import Gaussian
 from orbiframe_bases.powell_sabin import PowellSabin2, PowellSabin6
+from orbiframe_fitters import few_samples
 from orbiframe_fitters.least_squares import LeastSquares
 from orbiframe_fitters.sliding import Schedule, Sliding, _linearised, _normals, _Slide
 
@@ -185,3 +186,52 @@ def test_a_smooth_surface_is_not_pinched_in_one_step(mapped) -> None:
     thinner = coefficients + near[:, None] * (middle[0] - coefficients)
     assert slide._pinched(coefficients, thinner)
     assert not _Slide(basis, coordinate_samples(mapped), schedule)._pinched(coefficients, 0.1 * coefficients)
+
+
+def test_many_samples_count_though_few_slide(monkeypatch, mapped) -> None:
+    """Noise is averaged over all of them: the fit is as near to the torus as with all in every step."""
+    monkeypatch.setattr(few_samples, "_CHEAP", 0)
+    noisy = noisy_torus(mapped)
+    basis = Gaussian(mapped.orbifold, mapped, size=60)
+    few = few_samples.few_samples(basis, noisy)
+    assert len(few.weights) <= 24 * 60 < len(noisy.weights) / 3
+    here = off_torus(basis.values(noisy.points, Sliding().fit(basis, noisy)))
+    monkeypatch.setattr(few_samples, "_CHEAP", 1 << 30)
+    there = off_torus(basis.values(noisy.points, Sliding().fit(basis, noisy)))
+    monkeypatch.setattr(few_samples, "_CHEAP", 0)
+    monkeypatch.setattr(_Slide, "with_all", lambda _self, coefficients, *_: coefficients)
+    alone = off_torus(basis.values(noisy.points, Sliding().fit(basis, noisy)))
+    assert np.linalg.norm(here) < 1.05 * np.linalg.norm(there)
+    assert np.linalg.norm(alone) > 1.3 * np.linalg.norm(there)
+
+
+def test_few_samples_stand_for_all(monkeypatch, mapped) -> None:
+    """The weights and areas of the samples at which each function is the largest are kept, brute force says which."""
+    monkeypatch.setattr(few_samples, "_CHEAP", 0)
+    rng = np.random.default_rng(2)
+    noisy = noisy_torus(mapped)
+    noisy = replace(noisy, weights=noisy.weights * rng.integers(0, 2, len(noisy.weights)), area=noisy.weights)
+    basis = Gaussian(mapped.orbifold, mapped, size=40)
+    few = few_samples.few_samples(basis, noisy)
+    for samples, total in ((noisy, {}), (few, {})):
+        largest = basis.design_matrix(samples.points).toarray().argmax(axis=1)
+        total["weights"] = np.bincount(largest, weights=samples.weights, minlength=40)
+        total["shares"] = np.bincount(largest, weights=samples.shares, minlength=40)
+        total["most"] = np.bincount(2 * largest + (samples.weights > 0)).max()
+        if samples is noisy:
+            wanted = total
+    assert total["most"] == 24 < wanted["most"]
+    np.testing.assert_allclose(total["weights"], wanted["weights"], rtol=1e-12)
+    np.testing.assert_allclose(total["shares"], wanted["shares"], rtol=1e-12)
+
+
+def noisy_torus(mapped) -> Samples:
+    """Points of the torus, each moved by a fiftieth of its smaller radius, at places drawn at random."""
+    rng = np.random.default_rng(1)
+    every = coordinate_samples(mapped)
+    chosen = rng.integers(len(every.weights), size=6000)
+    samples = every.take(chosen)
+    ring = np.hypot(samples.values[:, 0], samples.values[:, 1])
+    u, v = np.arctan2(samples.values[:, 1], samples.values[:, 0]), np.arctan2(samples.values[:, 2], ring - BIG)
+    values = torus_points(u, v) + 0.02 * SMALL * rng.normal(size=(6000, 3))
+    return replace(samples, values=values, weights=np.full(6000, every.weights.sum() / 6000))
