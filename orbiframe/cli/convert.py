@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from orbiframe.cli.losses import losses
-from orbiframe.cli.repairs import add_repairs, repaired
 from orbiframe.cli.speech import say
 from orbiframe.cli.streams import STREAM, choice, read, write
 from orbiframe.components.registry import Registry
 from orbiframe.errors import FormatError, OrbiframeError, UsageError
 from orbiframe.files.destination import require_destination
 from orbiframe.files.outputs import require_apart
+from orbiframe.files.repair_options import add_repairs, repaired
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -99,7 +99,7 @@ def _convert(
         polyhedron = read(
             source, registry, args.input_format, options=options["reader"], degenerate=args.drop_degenerate
         )
-        polyhedron = repaired(polyhedron, args, title=title)
+        polyhedron = repaired(polyhedron, args, say, title=title)
         write(target, polyhedron, registry, args.output_format, options=options["writer"])
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import shlex
 import time
 from pathlib import Path
@@ -10,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from orbiframe.cli.boundary import add_boundary
 from orbiframe.cli.exports import export, export_options, require_known, size_of
-from orbiframe.cli.repairs import add_repairs, repaired, repairs_asked
 from orbiframe.cli.report import json_text, summary, warnings_of, write_report
 from orbiframe.cli.speech import say
 from orbiframe.components.registry import Registry
@@ -18,6 +18,7 @@ from orbiframe.errors import UsageError
 from orbiframe.files.destination import require_destination, require_textures
 from orbiframe.files.folder import require_folder
 from orbiframe.files.outputs import require_apart, require_output
+from orbiframe.files.repair_options import add_repairs, repaired, repairs_asked
 
 if TYPE_CHECKING:
     from orbiframe.fitting.config import Config
@@ -41,6 +42,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=200")
     add("--group", metavar="NAME", help="a named group, such as regular-polygon; else that of the mesh (group.method)")
     add("--map", metavar="NAME", help="the map to X/H, such as equivariant (map.method)")
+    add(
+        "--like",
+        metavar="FILE",
+        type=Path,
+        help="the map of a saved surface, for its mesh moved or cut finer (map.like)",
+    )
     add("--basis", metavar="NAME", help="the functions, such as ps6 or gaussian (basis.name)")
     add("--data", metavar="MEANS", help="what the mesh means: smooth, semi-smooth or facets; default auto (data.means)")
     add(
@@ -191,7 +198,7 @@ def _repaired(args: argparse.Namespace, config: Config, registry: Registry) -> P
 
     format = None if config.mesh.open else config.mesh.name
     mesh = gate.read(args.mesh, registry, format=format, degenerate=args.drop_degenerate)
-    return repaired(mesh, args, quiet=args.quiet)
+    return repaired(mesh, args, None if args.quiet else say)
 
 
 def overrides(args: argparse.Namespace) -> list[str]:
@@ -199,6 +206,7 @@ def overrides(args: argparse.Namespace) -> list[str]:
     named = {
         "group.method": args.group,
         "map.method": args.map,
+        "map.like": None if args.like is None else json.dumps(str(args.like)),
         "basis.name": args.basis,
         "shape.method": args.shape,
         "basis.size": args.size,
@@ -237,7 +245,7 @@ def _require_textures(args: argparse.Namespace, kind: str, registry: Registry) -
 def _require_destinations(args: argparse.Namespace, config: Config, registry: Registry) -> None:
     outputs = {"-o": args.output, "--report": args.report, "--save": args.save}
     plugins = {f"the plugin {path}": path for path in config.plugins}
-    require_apart(outputs, {"the input": args.mesh, "--config": args.config, **plugins})
+    require_apart(outputs, {"the input": args.mesh, "--config": args.config, "--like": args.like, **plugins})
     kind = _kind(args, config, registry)
     require_destination(args.output, registry, args.format, kind=kind)
     if config.output.uv:

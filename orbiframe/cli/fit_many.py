@@ -24,7 +24,7 @@ from orbiframe.workers.worker_process import COMPILING, Task, Tell
 MOST_WORKERS = 1024
 # Each of these names one file, and many meshes need many.
 _ALONE = ("output", "report", "save")
-_KEPT_HERE = ("run", "wrong_use", "progress")
+_KEPT_HERE = ("run", "wrong_use", "progress", "say")
 
 
 class Job(NamedTuple):

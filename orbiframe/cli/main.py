@@ -106,7 +106,8 @@ def _status(found: object, args: argparse.Namespace, registry: Registry) -> int:
 def parsed(arguments: list[str], registry: Registry) -> argparse.Namespace:
     """A command of a registry with its arguments; to be run as `args.run(args, registry)`.
 
-    What takes long is told to `args.progress`, a stage at a time: (name, None), then (name, seconds).
+    What takes long is told to `args.progress`, a stage at a time: (name, None), then (name, seconds); a sentence for
+    the standard error stream to `args.say`.
     Raises UsageError for an unknown command and SystemExit for wrong arguments.
     """
     chosen = _command(arguments)
@@ -116,6 +117,7 @@ def parsed(arguments: list[str], registry: Registry) -> argparse.Namespace:
     parser.set_defaults(run=lambda *_: _print_help(parser))
     args = parser.parse_args(arguments)
     args.command, args.words = chosen or "", tuple(arguments)
+    args.say = say
     args.progress = Progress(quiet=getattr(args, "quiet", False), mode=args.progress)
     return args
 

@@ -61,7 +61,8 @@ def _lines(report: Mapping[str, Any], written: str | None) -> Iterator[tuple[str
     yield (
         "map",
         f"{mapped['triangles']} triangles, {mapped['not_positive']} not positive; angle distortion "
-        f"median {angle['median']:.2f}, p95 {angle['p95']:.2f}, max {angle['max']:.2f}",
+        f"median {angle['median']:.2f}, p95 {angle['p95']:.2f}, max {angle['max']:.2f}"
+        + (f"; taken over from {mapped['like']['file']}" if mapped.get("like") else ""),
     )
     yield from (("warning", words) for words in _crowding(mapped["crowding"]))
     faces = report["faces"]

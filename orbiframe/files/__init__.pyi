@@ -14,6 +14,7 @@ from .outputs import (
     write_bytes as write_bytes,
     write_text as write_text,
 )
+from .repair_options import add_repairs as add_repairs, repaired as repaired, repairs_asked as repairs_asked
 from .sandbox import (
     confined_read as confined_read,
     confined_tables as confined_tables,

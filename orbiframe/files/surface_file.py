@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,7 @@ from orbiframe.files.surface_laws import (
     require_mesh,
     require_refinement,
 )
+from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.polyhedron import UNITS
 from orbiframe.orbifolds.orbifold import Orbifold
 from orbiframe.surfaces.surface import OrbifoldSurface
@@ -37,6 +38,7 @@ from orbiframe.triangulations.triangulation import Triangulation
 
 Arrays = Mapping[str, NDArray[Any]]
 About = dict[str, Any]
+T = TypeVar("T")
 
 _KIND, _VERSION = "orbiframe surface", 2
 # Files of version 1 have no check sums.
@@ -131,10 +133,33 @@ def load_surface(path: str | Path, registry: Components | None = None) -> Orbifo
     where the geometry or the basis is not installed or takes other options now.
     """
     path = Path(path)
+    registry = Registry.discover() if registry is None else registry
+    return _of_file(path, lambda arrays, about: _surface(arrays, about, registry, path))
+
+
+class SurfaceMap(NamedTuple):
+    """The map of a saved surface: of a refined mesh of unit size, and where and how large that mesh is in space.
+
+    size: the number of functions that it was made for, as far as they have an option of that name.
+    """
+
+    triangulation: Triangulation
+    refinement: Bisection
+    origin: NDArray[np.float64]
+    scale: float
+    size: int | None
+
+
+def load_surface_map(path: Path, registry: Components) -> SurfaceMap:
+    """The map of a file that `save_surface` wrote, without the functions on it. Raises what `load_surface` raises."""
+    return _of_file(path, lambda arrays, about: _map(arrays, about, registry))
+
+
+def _of_file(path: Path, made: Callable[[Arrays, About], T]) -> T:
+    """What is made of the content of a file; a broken law is told with the name of the file."""
     require_readable(path)
     try:
-        arrays, about = _read(path)
-        return _surface(arrays, about, Registry.discover() if registry is None else registry, path)
+        return made(*_read(path))
     except BrokenLaw as error:
         raise FormatError(f"{path}: {error}; the file was changed or damaged: save the surface again") from error
 
@@ -207,9 +232,29 @@ def _require_shapes(shapes: Mapping[str, Shape]) -> None:
 
 
 def _surface(arrays: Arrays, about: About, registry: Components, path: Path) -> OrbifoldSurface:
-    geometry: Any = registry.load("geometry", about["geometry"])()
     make = registry.load("basis", about["basis"])
     options = checked_options(make, about["options"], "basis", {})
+    found, coefficients = _map(arrays, about, registry), arrays["coefficients"]
+    basis = _basis(make, about["basis"], found.triangulation, options, path)
+    if basis.size != len(coefficients):
+        raise FormatError(
+            f"{path}: the file has {len(coefficients)} coefficients and the installed basis '{about['basis']}' "
+            f"{basis.size} functions; install the version of its plugin that made the file, or fit the mesh again"
+        )
+    return OrbifoldSurface(
+        found.triangulation,
+        found.refinement,
+        basis,
+        coefficients,
+        found.origin,
+        found.scale,
+        about["basis"],
+        about["options"],
+    )
+
+
+def _map(arrays: Arrays, about: About, registry: Components) -> SurfaceMap:
+    geometry: Any = registry.load("geometry", about["geometry"])()
     chi = about["euler_characteristic"]
     sign = (chi > 0) - (chi < 0)
     require(
@@ -229,20 +274,13 @@ def _surface(arrays: Arrays, about: About, registry: Components, path: Path) -> 
     require_map(triangulation)
     require_creases(triangulation)
     require_inside(triangulation, refinement)
-    coefficients, origin, scale = arrays["coefficients"], arrays["origin"], float(arrays["scale"])
+    origin, scale = arrays["origin"], float(arrays["scale"])
     for name in ("coefficients", "origin", "scale"):
         require(np.isfinite(arrays[name]), name, "numbers are finite")
     require(scale > 0, "scale", "it is positive")
     _require_sums(arrays, about)
-    basis = _basis(make, about["basis"], triangulation, options, path)
-    if basis.size != len(coefficients):
-        raise FormatError(
-            f"{path}: the file has {len(coefficients)} coefficients and the installed basis '{about['basis']}' "
-            f"{basis.size} functions; install the version of its plugin that made the file, or fit the mesh again"
-        )
-    return OrbifoldSurface(
-        triangulation, refinement, basis, coefficients, origin, scale, about["basis"], about["options"]
-    )
+    size = about["options"].get("size")
+    return SurfaceMap(triangulation, refinement, origin, scale, size if isinstance(size, int) else None)
 
 
 def _basis(make: Any, name: str, triangulation: Triangulation, options: Mapping[str, Any], path: Path) -> Any:

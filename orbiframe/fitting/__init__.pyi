@@ -16,3 +16,4 @@ from .pipeline import Result as Result, fit as fit
 from .report import versions as versions
 from .schema import config_schema as config_schema
 from .template import config_template as config_template, toml_value as toml_value
+from .written_config import config_toml as config_toml, tables_of as tables_of

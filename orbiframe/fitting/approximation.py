@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.components.options import options_of
-from orbiframe.errors import FitError
+from orbiframe.components.options import options_of, place_of
+from orbiframe.errors import ConfigError, FitError
 from orbiframe.fitting.accuracy import Accuracy, accuracy_of
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.made import made, made_coefficients
@@ -79,6 +79,7 @@ class Approximations:
                 basis = self._basis(mapped, size)
             fitter = self._fitter()
             samples, surface = self._surface(mapped, basis, meaning, fitter)
+            surface = self._moved(surface)
             accuracy = self.stages("error", accuracy_of, surface)
         except FitError as error:
             raise FitError("; ".join((str(error), *notes))) from error
@@ -159,6 +160,22 @@ class Approximations:
         )
         recipe = self.config.basis.name, self._options(basis.size)
         return samples, OrbifoldSurface(triangulation, refinement, basis, coefficients, np.zeros(3), 1.0, *recipe)
+
+    def _moved(self, surface: OrbifoldSurface) -> OrbifoldSurface:
+        """The surface with the coefficients that are moved by hand. Raises ConfigError for one that is not there."""
+        moved = self.config.output.moved
+        if not moved:
+            return surface
+        coefficients = surface.coefficients.copy()
+        for number, *way in moved:
+            if number >= len(coefficients):
+                place = place_of("output.moved", self.config.places)
+                raise ConfigError(
+                    f"{place}function {number} is moved, and there are {len(coefficients)}, from 0 on; output.moved "
+                    "belongs to the mesh and the options of the basis that it was made with"
+                )
+            coefficients[number] += np.array(way) / self.mapping.scale
+        return replace(surface, coefficients=coefficients)
 
     def _options(self, size: int) -> dict[str, Any]:
         """All options of the basis, those given and the defaults of the others."""

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from orbiframe.errors import ConfigError
 from orbiframe.fitting.config import Boundary, Config
+from orbiframe.fitting.correspondence import Correspondence
 from orbiframe.fitting.mapping import Mapping
 from orbiframe.fitting.size import LEAST_SIZE
 from orbiframe.fitting.stages import Stages
@@ -20,21 +21,25 @@ from orbiframe.meshes.surface_type import surface_type
 _FUNCTIONS_ACROSS = 6.0
 
 
-def mapping_of(mesh: Polyhedron, config: Config, stages: Stages) -> Mapping:
+def mapping_of(mesh: Polyhedron, config: Config, stages: Stages, like: Correspondence | None = None) -> Mapping:
     """The maps of a mesh of unit size; one with a boundary is closed first, as the configuration says.
 
     "auto" takes the double of an annulus or a Möbius band, which is flat, else the collar. Raises TopologyError for
-    boundary loops that cannot be closed.
+    boundary loops that cannot be closed. like: whose map is taken over, and how that mesh was closed.
     """
     if (mesh.twin >= 0).all():
         triangles = stages("triangles", triangulated, mesh)
-        return Mapping(mesh, triangles, surface_type(mesh), config, stages)
+        return Mapping(mesh, triangles, surface_type(mesh), config, stages, like=like)
     if config.data.creases is not None:
         raise ConfigError(
             "creases (data.creases) are kept on closed meshes only so far; leave them out, or close the mesh in a mesh "
             "editor"
         )
-    return _closed(mesh, _way(mesh, config.boundary), config, stages)
+    how = _way(mesh, config.boundary)
+    if like is not None:
+        whole, own = like.closed(triangulated(mesh))
+        return Mapping(whole, whole, surface_type(whole), config, stages, own, how, like)
+    return _closed(mesh, how, config, stages)
 
 
 def _way(mesh: Polyhedron, boundary: Boundary) -> Closing:

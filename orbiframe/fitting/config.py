@@ -33,19 +33,25 @@ class Step:
         return self.name in OPEN_NAMES
 
 
+# A coefficient that is moved by hand.
+Moved = tuple[Annotated[int, Ge(0)], float, float, float]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Output:
     """What to make of the surface.
 
     refine: every triangle of the mesh becomes refine^2 triangles, None for as many as a fine picture needs; tolerance
     and max_error: the largest root mean square and the largest distance allowed, relative to the diagonal of the
-    bounding box, None for a fixed size; uv: whether the mesh gets texture coordinates.
+    bounding box, None for a fixed size; uv: whether the mesh gets texture coordinates; moved: coefficients moved by
+    hand after the fit, each as the number of its function and x, y, z in lengths of the mesh.
     """
 
     refine: Annotated[int, Ge(1)] | None = None
     tolerance: Annotated[float, Gt(0)] | None = None
     max_error: Annotated[float, Gt(0)] | None = None
     uv: bool = False
+    moved: tuple[Moved, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,6 +89,8 @@ STEPS = {
     "fitter": ("fitter", "name", "sliding"),
 }
 TABLES = (*STEPS, "data", "output")
+# The tables that say how a map is made.
+_OF_MAPS = ("geometry", "group", "marking", "map", "shape")
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +101,8 @@ class Config:
     "mesh" takes the group from the mesh; marking: cuts the mesh open for a named group; map: "auto" takes the
     parametrizer that fits the geometry and the group; shape: changes the map so that faces become regular, "none"
     leaves it as it is; basis; fitter. boundary: how a mesh with a boundary is closed for the map, "error" if it is not.
-    places: where each "table.key" was written, for error messages. NAMES: of all tables.
+    like: a saved surface whose map is taken over. places: where each "table.key" was written, for error messages.
+    NAMES: of all tables.
 
     >>> from orbiframe import Config
     >>> config = Config.load(overrides={"basis": {"name": "ps2", "size": 200}})
@@ -109,6 +118,7 @@ class Config:
     plugins: tuple[Path, ...] = ()
     places: Mapping[str, str] = field(default_factory=dict)
     boundary: Boundary = "error"
+    like: Path | None = None
 
     @classmethod
     def load(cls, path: Path | None = None, overrides: Overrides = (), registry: Registry | None = None) -> Config:
@@ -151,9 +161,11 @@ class Config:
             tables = {**tables, "basis": {"name": CREASED_BASIS, **table_of(tables, "basis", places)}}
         mesh = dict(table_of(tables, "mesh", places))
         boundary = checked_value(Boundary, mesh.pop("boundary", "error"), "mesh.boundary", places)
-        tables = {**tables, "mesh": mesh}
+        map_ = dict(table_of(tables, "map", places))
+        like = checked_value(str | None, map_.pop("like", None), "map.like", places)
+        tables = {**tables, "mesh": mesh, "map": map_}
         steps = {table: _step(table, table_of(tables, table, places), places) for table in STEPS}
-        return cls(steps, output, data, tuple(folder / file for file in files), places, boundary)
+        return cls(steps, output, data, tuple(folder / file for file in files), places, boundary, like and Path(like))
 
     @property
     def mesh(self) -> Step:
@@ -228,6 +240,7 @@ class Config:
         if "size" in found["basis"]:
             found["basis"]["size"] = self.basis.options.get("size")
         found["mesh"]["boundary"] = self.boundary
+        found["map"]["like"] = None if self.like is None else str(self.like)
         return {**found, "data": asdict(self.data), "output": asdict(self.output)}
 
     def _resolved(self, table: str, registry: Registry) -> dict[str, Any]:
@@ -252,6 +265,8 @@ class Config:
                 _require_option_of_kind(table, step, registry, self.places)
         if self.data.creases is not None:
             _require_creased(self.basis.name, registry, self.places)
+        if self.like is not None:
+            _require_no_other_map(self)
         return self
 
 
@@ -270,6 +285,19 @@ def _require_creased(name: str, registry: Registry, places: Mapping[str, str]) -
     )
 
 
+def _require_no_other_map(config: Config) -> None:
+    """Raise ConfigError where a map is taken over, and how one is made is said too."""
+    for table in _OF_MAPS:
+        step = config.steps[table]
+        if not step.open or step.options:
+            key = next(iter(step.options), STEPS[table][1])
+            place = place_of(f"{table}.{key}" if step.open else f"{table}.{STEPS[table][1]}", config.places)
+            raise ConfigError(
+                f"{place}the map of {config.like} is taken over (map.like), so that [{table}] has no say; leave out "
+                "one of them"
+            )
+
+
 def _step(table: str, given: Mapping[str, Any], places: Mapping[str, str]) -> Step:
     kind, key, default = STEPS[table]
     name = checked_value(str, given.get(key, default), f"{table}.{key}", places)
@@ -277,7 +305,7 @@ def _step(table: str, given: Mapping[str, Any], places: Mapping[str, str]) -> St
 
 
 def _require_option_of_kind(table: str, step: Step, registry: Registry, places: Mapping[str, str]) -> None:
-    own = {"boundary": None} if table == "mesh" else {}
+    own = {"mesh": {"boundary": None}, "map": {"like": None}}.get(table, {})
     known = {
         STEPS[table][1]: None,
         **own,

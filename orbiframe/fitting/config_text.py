@@ -23,10 +23,17 @@ Overrides = Iterable[str] | Mapping[str, Any]
 def read_tables(path: Path) -> tuple[dict[str, Any], dict[str, str]]:
     """The tables of a TOML file, and where every "table.key", "table" and top-level key stands: file and line.
 
-    Raises ConfigError for a file that cannot be read or is not TOML.
+    A saved surface that the tables name is relative to the folder of the file. Raises ConfigError for a file that
+    cannot be read or is not TOML.
     """
     text = _read(path)
-    return _parsed(text, path), _places(text, path)
+    return _beside(_parsed(text, path), path.parent), _places(text, path)
+
+
+def _beside(tables: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """The tables of a file, with the saved surface that they name relative to its folder."""
+    like = tables["map"].get("like") if isinstance(tables.get("map"), Mapping) else None
+    return tables if not isinstance(like, str) else tables | {"map": {**tables["map"], "like": str(folder / like)}}
 
 
 def override_items(overrides: Overrides) -> Iterator[tuple[str, str, Any, str]]:

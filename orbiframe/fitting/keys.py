@@ -48,6 +48,10 @@ _BOUNDARY_MEANING = (
     "double, with a second copy of mesh and strip, for long tubes; auto takes double for annuli and Möbius bands, "
     "else collar"
 )
+_LIKE_MEANING = (
+    "a saved surface, relative to this file, whose map is taken over, for its mesh moved or cut finer; if not given, a "
+    "map is made"
+)
 _RESULT_MEANINGS = {
     "data.means": "what the mesh means: facets, the polyhedron is the truth; smooth, its vertices lie on a smooth"
     " surface; semi-smooth, so they do where facets are curved; auto decides by the share of its "
@@ -65,6 +69,8 @@ _RESULT_MEANINGS = {
     "reached",
     "output.uv": "the mesh gets texture coordinates: X/H is cut open and laid into the unit square, for .obj, .gltf "
     "and .glb",
+    "output.moved": "coefficients moved by hand after the fit: lists of the number of a function and x, y, z in "
+    "lengths of the mesh, as `orbiframe edit` writes them",
     "output.max_error": "largest error anywhere, likewise; both may be given",
 }
 PLUGINS_MEANING = "Python files with components, relative to this file"
@@ -93,6 +99,8 @@ def config_keys(registry: Registry) -> Iterator[ConfigKey]:
             yield from _step_keys(table, registry)
             if table == "mesh":
                 yield ConfigKey("mesh", "boundary", Boundary, "error", _BOUNDARY_MEANING)
+            if table == "map":
+                yield ConfigKey("map", "like", str, None, _LIKE_MEANING)
         else:
             yield from _result_keys(table, Data if table == "data" else Output)
 

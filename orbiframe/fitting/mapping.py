@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +17,7 @@ from orbiframe.delaunay.crease_domain import creased
 from orbiframe.errors import ConfigError, MapError
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.content import content_key, mesh_key, source_key
+from orbiframe.fitting.correspondence import Carried, Correspondence
 from orbiframe.fitting.made import made
 from orbiframe.fitting.stages import Stages
 from orbiframe.groups.group import Group
@@ -48,11 +49,15 @@ _NEEDLES, _MOST = 3, 20
 
 
 class Mapped(NamedTuple):
-    """A refined mesh and its map to X/H, as the parametrizer made it and as the optimizer left it."""
+    """A refined mesh and its map to X/H, as the parametrizer made it and as the optimizer left it.
+
+    carried: how it was taken over, None where it was made.
+    """
 
     refinement: Bisection
     first: Triangulation
     triangulation: Triangulation
+    carried: Carried | None = None
 
     def with_density(self, density: NDArray[np.float64]) -> Mapped:
         """The same map, with so many functions per length wanted at its vertices."""
@@ -70,8 +75,9 @@ class Mapping:
     """The maps of one polyhedron of unit size.
 
     triangles: its faces cut into triangles; inside: (F,), those of a mesh with a boundary, which the others only close,
-    None where all are; closing: how it was closed; maps: the refinement and the map for every longest edge that has
-    been needed so far.
+    None where all are; closing: how it was closed; like: whose map is taken over, None for a map of its own; origin,
+    scale: where and how large the polyhedron was; maps: the refinement and the map for every longest edge that has been
+    needed so far.
     """
 
     polyhedron: Polyhedron
@@ -81,6 +87,9 @@ class Mapping:
     stages: Stages
     inside: NDArray[np.bool_] | None = None
     closing: str = "none"
+    like: Correspondence | None = None
+    origin: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+    scale: float = 1.0
     maps: dict[float, Mapped] = field(default_factory=dict)
 
     @cached_property
@@ -117,15 +126,33 @@ class Mapping:
     def for_size(self, size: int) -> Mapped:
         """The mesh refined so that samples and centres are dense enough for so many functions, and its map to X/H."""
         vertices = max(_LEAST_VERTICES, _VERTICES_PER_FUNCTION * size)
+        if self.like is not None and self.like.serves(self.triangles, vertices):
+            return self._taken_over(0.0, lambda like: like.moved(self.triangles))
         longest = even_edge_length(self.facets, vertices)
+        if self.like is not None:
+            return self._taken_over(longest, partial(self._refined_like, longest, vertices))
         if longest not in self.maps:
             refinement = self.stages("refinement", self._refined, longest, vertices)
             self.maps[longest] = self._mapped(refinement, refinement.polyhedron)
         return self.maps[longest]
 
+    def _refined_like(self, longest: float, vertices: int, like: Correspondence) -> Carried:
+        return like.refined(self._refined(longest, vertices), self.origin, self.scale)
+
+    def _taken_over(self, key: float, take: Callable[[Correspondence], Carried]) -> Mapped:
+        """The map that is taken over; once for each longest edge."""
+        assert self.like is not None
+        if key not in self.maps:
+            found: Carried = self.stages("map", take, self.like)
+            first = self._bounded(found.refinement, found.triangulation)
+            self.maps[key] = Mapped(found.refinement, first, first, found)
+        return self.maps[key]
+
     def creased(self, mapped: Mapped, size: int, unknowns: tuple[int, int, int]) -> Mapped:
         """The map with creases where the mesh is sharp, for about `size` functions; see `data.creases`."""
-        found = creased(mapped.triangulation, self._sharp(mapped.refinement.polyhedron), size, unknowns)
+        sharp = self._sharp(mapped.refinement.polyhedron)
+        kept = None if self.like is None else self.like.creased(mapped.triangulation, sharp, size)
+        found = creased(mapped.triangulation, sharp, size, unknowns) if kept is None else kept
         unshaped = mapped.first.points is mapped.triangulation.points
         return mapped._replace(first=found if unshaped else mapped.first, triangulation=found)
 
@@ -143,7 +170,13 @@ class Mapping:
         return found
 
     def of_lifted(self, mapped: Mapped, lifted: Polyhedron) -> Mapped:
-        """The map of the refined mesh with its vertices moved; the one before, if those cannot be mapped."""
+        """The map of the refined mesh with its vertices moved; the one before, if those cannot be mapped.
+
+        A map that is taken over stays as it is.
+        """
+        if self.like is not None:
+            moved = replace(mapped.triangulation, polyhedron=lifted)
+            return mapped._replace(first=moved, triangulation=moved)
         try:
             again = self._mapped(mapped.refinement, lifted)
         except MapError:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.components.registry import Registry
+from orbiframe.errors import UsageError
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.given_back import GivenBack
 from orbiframe.fitting.kept_maps import KeptMaps
@@ -23,8 +25,10 @@ from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.repair import component
 from orbiframe.meshes.sizes import vector_areas
 from orbiframe.meshes.unions import disjoint_union
+from orbiframe.surfaces.surface import OrbifoldSurface
 
 Floats = NDArray[np.float64]
+Like = OrbifoldSurface | str | Path | None
 
 # A closed surface of any shape needs some functions, however small it is.
 _LEAST = 100
@@ -46,6 +50,7 @@ def fit_parts(
     progress: Progress | Literal[False] | None = None,
     *,
     maps: KeptMaps | None = None,
+    like: Like = None,
     **settings: Any,
 ) -> Parts:
     """The smooth surfaces of all components of a polyhedron, that with the most faces first.
@@ -58,16 +63,23 @@ def fit_parts(
     config = configured(config, settings)
     registry = registry_for(config) if registry is None else registry
     with told(progress) as heard:
-        return _fitted(mesh, config.checked(registry), registry, heard, maps)
+        return _fitted(mesh, config.checked(registry), registry, heard, maps, like)
 
 
-def _fitted(mesh: object, config: Config, registry: Registry, progress: Progress, maps: KeptMaps | None) -> Parts:
+def _fitted(
+    mesh: object, config: Config, registry: Registry, progress: Progress, maps: KeptMaps | None, like: Like
+) -> Parts:
     whole = mesh_of(mesh, config, registry)
     require_closed_surface(whole, several=True, boundary=config.boundary != "error")
     count = face_components(whole)[0]
     if count == 1:
-        only = fit(whole, config, registry, progress, maps=maps)
+        only = fit(whole, config, registry, progress, maps=maps, like=like)
         return Parts((only,), only.output, only.report)
+    if like is not None or config.like is not None or config.output.moved:
+        raise UsageError(
+            f"the mesh has {count} components, and a map that is taken over (--like, map.like) and coefficients that "
+            "are moved (output.moved) are those of one; choose one with --component N"
+        )
     pieces = [component(whole, number).polyhedron for number in range(1, count + 1)]
     areas = np.array([np.linalg.norm(vector_areas(piece), axis=1).sum() for piece in pieces])
     shares = areas / areas.sum()

@@ -17,6 +17,7 @@ from orbiframe.files import gate
 from orbiframe.fitting.approximation import Approximations
 from orbiframe.fitting.closed_mesh import mapping_of
 from orbiframe.fitting.config import Config, Output
+from orbiframe.fitting.correspondence import Correspondence
 from orbiframe.fitting.given_back import GivenBack
 from orbiframe.fitting.inspection import inspected
 from orbiframe.fitting.kept_maps import KeptMaps
@@ -25,6 +26,7 @@ from orbiframe.fitting.report import report
 from orbiframe.fitting.settings import configured
 from orbiframe.fitting.stages import Progress, Stages
 from orbiframe.fitting.told import told
+from orbiframe.functions.samples import Samples
 from orbiframe.meshes.defects import require_closed_surface
 from orbiframe.meshes.foreign_meshes import polyhedron_of
 from orbiframe.meshes.orientation import oriented
@@ -42,6 +44,7 @@ class Result(GivenBack):
     """What a fit returns: the surface, a mesh on it with normals, and the report of all steps as plain data.
 
     input: the mesh, oriented, all of whose vertices are in faces; its triangles are `surface.refinement.coarse`.
+    samples: what was fitted, of a mesh of unit size at the origin.
 
     >>> from orbiframe import fit
     >>> result = fit("dataset:sphere", size=60)
@@ -56,6 +59,7 @@ class Result(GivenBack):
     output: Polyhedron
     report: dict[str, Any]
     input: Polyhedron
+    samples: Samples
 
 
 def fit(
@@ -66,6 +70,7 @@ def fit(
     *,
     share: float = 1.0,
     maps: KeptMaps | None = None,
+    like: OrbifoldSurface | str | Path | None = None,
     **settings: Any,
 ) -> Result:
     """The smooth surface of a polyhedron: `fit("shape.off", size=500)`; with a boundary: `boundary="auto"` as well.
@@ -74,7 +79,8 @@ def fit(
     see `Polyhedron.of`. config: by default that of an empty file; registry: by default all that is installed. progress:
     called with the name of each stage at its start (seconds None) and at its end; None says what takes long on the
     standard error stream, False nothing. share: of the faces that a fine picture needs; maps: a folder from which maps
-    to X/H are taken where they are there, and in which they are kept.
+    to X/H are taken where they are there, and in which they are kept. like: a surface, or the file of one, whose map is
+    taken over by this mesh, which is the same one moved, or cut otherwise; MapError says when it does not serve.
 
     settings: what is to differ from the configuration: `size`, `tolerance`, `max_error`, `refine`, `boundary` and
     `fast=True` as on the command line; a table by its name, `basis="ps2"` or
@@ -88,28 +94,33 @@ def fit(
     >>> len(result.output.normals) == len(result.output.vertices)
     True
     """
-    config = configured(config, settings)
+    known = Correspondence.of_surface(like) if isinstance(like, OrbifoldSurface) else None
+    file = None if like is None or known is not None else str(like)
+    config = configured(config, settings | {"like": file})
     registry = registry_for(config) if registry is None else registry
     with told(progress) as heard:
-        return _fitted(mesh, config, Stages(registry, heard, maps=maps), share)
+        return _fitted(mesh, config, Stages(registry, heard, maps=maps), share, known)
 
 
-def _fitted(mesh: object, config: Config, stages: Stages, share: float) -> Result:
+def _fitted(mesh: object, config: Config, stages: Stages, share: float, like: Correspondence | None) -> Result:
     registry = stages.registry
     config = config.checked(registry)
+    if config.like is not None and like is None:
+        like = Correspondence.of_file(config.like, registry)
     polyhedron = mesh if isinstance(mesh, Polyhedron) else stages("read", mesh_of, mesh, config, registry)
     surface_type = stages("topology", partial(require_closed_surface, boundary=config.boundary != "error"), polyhedron)
     require_density(config.output.refine, int((polyhedron.face_sizes - 2).sum()), config.places)
     placed = oriented(without_unused_vertices(polyhedron))
+    placed = placed if like is None else like.cut(placed)
     unit, origin, scale = _normalised(placed)
-    mapping = mapping_of(unit, config, stages)
+    mapping = replace(mapping_of(unit, config, stages, like), origin=origin, scale=scale)
     found = Approximations(mapping, config, stages).wanted()
     surface = replace(found.surface, origin=origin, scale=scale)
     output = stages("tessellation", _tessellated, surface, config.output, share * _OUTPUT_FACES)
     require_told_by_ends(output, surface_type)
     inspection = stages("inspection", inspected, surface, output, config.output.refine is None)
     summary = report(surface, surface_type, mapping, config, found, output, inspection, stages.seconds)
-    return Result(surface, output, summary, placed)
+    return Result(surface, output, summary, placed, found.samples)
 
 
 def _tessellated(surface: OrbifoldSurface, output: Output, wanted: float) -> Polyhedron:

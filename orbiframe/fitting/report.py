@@ -64,7 +64,7 @@ def report(
             "patches": triangulation.orbifold.atlas.patch_count,
             "relation_defect": triangulation.relation_defect,
         },
-        "map": _map_report(triangulation),
+        "map": {**_map_report(triangulation), "like": _like_report(mapping, found)},
         "faces": _faces_report(*found.mapped.face_shapes(mapping.polyhedron), _own_faces(mapping)),
         "data": {
             "means": found.meaning.name,
@@ -91,7 +91,12 @@ def report(
         "curvature": _curvature_report(surface),
         "uv": _texture_report(output),
         "creases": None if quality is None else quality._asdict() | {"angle_from": config.data.creases},
-        "notes": [*found.notes, *inspection.notes(output), *(() if quality is None else quality.notes())],
+        "notes": [
+            *found.notes,
+            *_like_notes(mapping, triangulation),
+            *inspection.notes(output),
+            *(() if quality is None else quality.notes()),
+        ],
         "output": {
             "vertices": len(output.vertices),
             "faces": output.face_count,
@@ -100,6 +105,16 @@ def report(
         "seconds": {stage: round(spent, 4) for stage, spent in seconds.items()},
         "versions": versions(),
     }
+
+
+def _like_report(mapping: Mapping, found: Approximation) -> dict[str, Any] | None:
+    """From which surface the map was taken over, and how; None where it was made."""
+    carried = found.mapped.carried
+    return None if mapping.like is None or carried is None else mapping.like.report(carried)
+
+
+def _like_notes(mapping: Mapping, triangulation: Triangulation) -> tuple[str, ...]:
+    return () if mapping.like is None else mapping.like.notes(triangulation)
 
 
 def _border_report(border: Border | None, mapping: Mapping, smooth: bool) -> dict[str, Any] | None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import Any
 
 from orbiframe.components.suggestion import did_you_mean
 from orbiframe.errors import UsageError
 from orbiframe.fitting.config import STEPS, TABLES, Config
+from orbiframe.fitting.written_config import tables_of
 
 # The keywords that are no tables: table and key of each. They are called as on the command line.
 SHORT = {
@@ -17,6 +18,7 @@ SHORT = {
     "max_error": ("output", "max_error"),
     "refine": ("output", "refine"),
     "boundary": ("mesh", "boundary"),
+    "like": ("map", "like"),
 }
 _SELECTORS = {table: selector for table, (_, selector, _) in STEPS.items()} | {"data": "means"}
 _FAST: dict[str, dict[str, Any]] = {"fitter": {"name": "least-squares"}, "data": {"lift": False}}
@@ -25,31 +27,21 @@ _FAST: dict[str, dict[str, Any]] = {"fitter": {"name": "least-squares"}, "data":
 def configured(config: Config | None, settings: Mapping[str, Any]) -> Config:
     """A configuration, by default that of an empty file, with other settings.
 
-    settings: `size`, `tolerance`, `max_error`, `refine` and `boundary`; a table by its name, `basis="ps2"` for the
-    component that it names or `basis={"name": "ps2", "size": 300}` for several keys; `fast=True` for the linear fit on
-    one map. None leaves a setting as it is. Raises UsageError for an unknown keyword, ConfigError for a value of a
+    settings: `size`, `tolerance`, `max_error`, `refine`, `boundary`, `like`; a table by its name, `basis="ps2"` for
+    the component that it names or `basis={"name": "ps2", "size": 300}` for several keys; `fast=True` for the linear fit
+    on one map. None leaves a setting as it is. Raises UsageError for an unknown keyword, ConfigError for a value of a
     wrong type.
     """
     given = {key: value for key, value in settings.items() if value is not None}
     if not given:
         return Config.from_tables({}) if config is None else config
     base = Config.from_tables({}) if config is None else config
-    tables, places = _tables(base), dict(base.places)
+    tables, places = tables_of(base), dict(base.places)
     for keyword, value in given.items():
         for table, keys in _changes(keyword, value).items():
             tables[table] |= keys
             places |= {f"{table}.{key}": f"fit({keyword}={value!r})" for key in keys}
     return replace(Config.from_tables(tables, places=places), plugins=base.plugins)
-
-
-def _tables(config: Config) -> dict[str, dict[str, Any]]:
-    """The tables that a file of this configuration would have."""
-    steps: dict[str, dict[str, Any]] = {
-        table: {_SELECTORS[table]: step.name, **step.options} for table, step in config.steps.items()
-    }
-    steps["mesh"]["boundary"] = config.boundary
-    rest = {"output": asdict(config.output), "data": asdict(config.data)}
-    return steps | {table: {k: v for k, v in keys.items() if v is not None} for table, keys in rest.items()}
 
 
 def _changes(keyword: str, value: Any) -> dict[str, dict[str, Any]]:

@@ -7,7 +7,12 @@ from .basis import (
     lifted as lifted,
 )
 from .feet import around as around, foot_points as foot_points, foot_step as foot_step, moved as moved
-from .fitter import Fitter as Fitter, ValidatedFit as ValidatedFit, ValidatedFitter as ValidatedFitter
+from .fitter import (
+    Fitter as Fitter,
+    PreparedFitter as PreparedFitter,
+    ValidatedFit as ValidatedFit,
+    ValidatedFitter as ValidatedFitter,
+)
 from .jet_quotient import divide_jets as divide_jets
 from .orbit_sum_basis import OrbitSumBasis as OrbitSumBasis
 from .samples import Samples as Samples, coordinate_samples as coordinate_samples

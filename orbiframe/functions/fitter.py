@@ -29,6 +29,18 @@ class Fitter(ABC):
         """The coefficients (size, d) of the approximations of the d sampled functions; pure and deterministic."""
 
 
+class PreparedFitter(Fitter):
+    """A linear fitter whose equations can be factored once, for values that change."""
+
+    @abstractmethod
+    def prepared(self, basis: Basis, samples: Samples) -> Callable[[Floats], Floats]:
+        """The fit as a linear map of values (n, d) at the samples, whatever theirs are, to coefficients (size, d).
+
+        Everything but the values is taken from the samples and stays; `prepared(basis, samples)(samples.values)` is
+        `fit(basis, samples)` up to rounding.
+        """
+
+
 class ValidatedFit(NamedTuple):
     """A fit and how well it foretells.
 

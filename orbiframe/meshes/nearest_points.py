@@ -10,6 +10,7 @@ from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.triangle_boxes import LEAF, TriangleBoxes
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
 
 
 class NearestPoints:
@@ -27,14 +28,42 @@ class NearestPoints:
     def searched(self, points: Floats) -> tuple[Floats, int]:
         """The squares of the distances, (n,), and how many triangles were tried for all points together."""
         points = np.ascontiguousarray(points, dtype=np.float64)
-        squares, tried = _search(points, self._corners, *self._boxes[1:])
+        squares, _, tried = _search(points, self._corners, *self._boxes[1:])
         return np.asarray(squares), int(tried)
+
+    def places(self, points: Floats) -> tuple[Ints, Floats]:
+        """A triangle (n,) in which the nearest point of the mesh lies, and its barycentric coordinates there (n, 3)."""
+        points = np.ascontiguousarray(points, dtype=np.float64)
+        chosen = _search(points, self._corners, *self._boxes[1:])[1]
+        return self._boxes.order[chosen], _coordinates(points, self._corners[chosen])
+
+
+def _coordinates(points: Floats, corners: Floats) -> Floats:
+    """The barycentric coordinates of the points of triangles (n, 3, 3) that are nearest to points (n, 3)."""
+    count = np.arange(len(points))
+    onto_sides = np.zeros((3, len(points), 3))
+    for side in range(3):
+        start, along = corners[:, side], corners[:, (side + 1) % 3] - corners[:, side]
+        length = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
+        share = np.clip(np.einsum("ni,ni->n", points - start, along) / length, 0, 1)
+        onto_sides[side, :, side], onto_sides[side, :, (side + 1) % 3] = 1 - share, share
+    apart = points - np.einsum("snc,nci->sni", onto_sides, corners)
+    found = onto_sides[(apart**2).sum(axis=2).argmin(axis=0), count]
+    u, v, w = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], points - corners[:, 0]
+    normal = np.cross(u, v)
+    square = np.maximum((normal**2).sum(axis=1), np.finfo(float).tiny)
+    second = np.einsum("ni,ni->n", np.cross(w, v), normal) / square
+    third = np.einsum("ni,ni->n", np.cross(u, w), normal) / square
+    over = np.stack([1 - second - third, second, third], axis=1)
+    inside = (over >= 0).all(axis=1) & (square > np.finfo(float).tiny)
+    found[inside] = over[inside]
+    return np.asarray(found)
 
 
 @compiled
 def _search(points, corners, axes, low, high):  # type: ignore[no-untyped-def]
-    """The least squared distance of each point to the triangles, and how many triangles were tried."""
-    found, tried, nearest = np.empty(len(points)), 0, 0
+    """The least squared distance of each point to the triangles, of which one, and how many triangles were tried."""
+    found, chosen, tried, nearest = np.empty(len(points)), np.empty(len(points), dtype=np.intp), 0, 0
     first_leaf = len(low) // 2
     stack, away = np.empty(64, dtype=np.intp), np.empty(64)
     for n in range(len(points)):
@@ -60,8 +89,8 @@ def _search(points, corners, axes, low, high):  # type: ignore[no-untyped-def]
             if away[size - 2] < away[size - 1]:  # the nearer one is opened first
                 stack[size - 2], stack[size - 1] = stack[size - 1], stack[size - 2]
                 away[size - 2], away[size - 1] = away[size - 1], away[size - 2]
-        found[n] = least
-    return found, tried
+        found[n], chosen[n] = least, nearest
+    return found, chosen, tried
 
 
 @compiled(inline=True)

@@ -2,27 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
+from scipy.sparse import csr_array, diags_array
 
-from orbiframe import Basis, DifferentiableBasis, FitError, Fitter, Samples, UsageError
+from orbiframe import Basis, DifferentiableBasis, FitError, Samples, UsageError
+from orbiframe.functions import PreparedFitter
 from orbiframe.meshes import curve_order
 from orbiframe_fitters.cross_validation import Trial
 from orbiframe_fitters.energy import FAIRING, Energy, energy_of
 from orbiframe_fitters.gram import Gram
-from orbiframe_fitters.normal_equations import solved
+from orbiframe_fitters.normal_equations import solved, solver_of
 
 Floats = NDArray[np.float64]
 
 _CHUNK = 1 << 14  # samples whose derivatives are in memory at one time
 
 
-class LeastSquares(Fitter):
+class LeastSquares(PreparedFitter):
     """The coefficients c that minimise the sum of w |B c - v|^2 + fairing length^(2k) area |D^k (B c)|^2 (paper, 3.4).
 
     Over all samples with values v and weights w; D^k is the Laplacian of the surface in space (k = 2), or its gradient
@@ -45,6 +46,12 @@ class LeastSquares(Fitter):
         """The coefficients (size, d); see the class."""
         return linear_fit(basis, samples, self.fairing).coefficients
 
+    def prepared(self, basis: Basis, samples: Samples) -> Callable[[Floats], Floats]:
+        """See `PreparedFitter`: the fairing is that of the fit of these samples."""
+        found = equations(basis, samples, self.fairing)
+        solve, pull = solver_of(found.matrix), found.pull()
+        return lambda values: solve(np.asarray(pull @ values))
+
 
 class LinearFit(NamedTuple):
     """The coefficients (size, d) of a linear fit, and the fairing that it took."""
@@ -55,11 +62,41 @@ class LinearFit(NamedTuple):
 
 def linear_fit(basis: Basis, samples: Samples, fairing: float | None) -> LinearFit:
     """The linear least squares fit; without a given fairing as much as the samples ask for, see `LeastSquares`."""
+    found = equations(basis, samples, fairing)
+    return LinearFit(solved(found.matrix, found.right), found.fairing)
+
+
+class Equations(NamedTuple):
+    """The normal equations of a linear fit, (size, size) and (size, d), and the fairing that they have.
+
+    rows, weights, order: of the samples that count, in parts, and their numbers among all `total` samples.
+    """
+
+    matrix: Any
+    right: Floats
+    fairing: float
+    rows: list[csr_array]
+    weights: list[Floats]
+    order: list[NDArray[np.intp]]
+    total: int
+
+    def pull(self) -> csr_array:
+        """The matrix from values at all samples, (total, d), to right-hand sides, (size, total)."""
+        parts = [csr_array(diags_array(weight) @ rows) for weight, rows in zip(self.weights, self.rows, strict=True)]
+        weighted = csr_array(scipy.sparse.vstack(parts)).tocoo()
+        place = weighted.col, np.concatenate(self.order)[weighted.row]
+        return csr_array((weighted.data, place), shape=(weighted.shape[1], self.total))
+
+
+def equations(basis: Basis, samples: Samples, fairing: float | None) -> Equations:
+    """The equations of `linear_fit`."""
     require_values_alone(samples)
     require_rows(basis, samples, fairing)
     energy = None if fairing == 0 else energy_of(basis, samples)
     gram, stiff, right = Gram(basis.size), Gram(basis.size), np.zeros((basis.size, samples.values.shape[1]))
-    data = []
+    all_rows: list[csr_array] = []
+    all_weights: list[Floats] = []
+    order, values = [], []
     for part, chosen in chunks(samples):
         jets = _jets(basis, part, energy)
         gram.add(jets[0], part.weights)
@@ -68,19 +105,22 @@ def linear_fit(basis: Basis, samples: Samples, fairing: float | None) -> LinearF
             for rows in energy.rows(jets):
                 stiff.add(rows, energy.weights(chosen, part.stretch))
         counted = np.flatnonzero(part.weights > 0)
-        data.append((jets[0][counted], part.weights[counted], part.values[counted]))
+        all_rows.append(csr_array(jets[0][counted]))
+        all_weights.append(part.weights[counted])
+        values.append(part.values[counted])
+        order.append(chosen[counted])
     matrix: Any = gram.matrices()[0]
+    kept = all_rows, all_weights, order, len(samples.weights)
     if energy is None:
-        return LinearFit(solved(matrix, right), 0.0)
+        return Equations(matrix, right, 0.0, *kept)
     bend: Any = stiff.matrices()[0]
     amount = FAIRING[energy.order] if fairing is None else fairing
     if fairing is None and energy.order == 3:
-        rows, weights, values = zip(*data, strict=True)
         trial = Trial(
-            csr_array(scipy.sparse.vstack(rows)), np.concatenate(weights), np.concatenate(values), matrix, bend
+            csr_array(scipy.sparse.vstack(all_rows)), np.concatenate(all_weights), np.concatenate(values), matrix, bend
         )
         amount = trial.fairing(amount, samples.noise)
-    return LinearFit(solved(matrix + amount * bend, right), amount)
+    return Equations(matrix + amount * bend, right, amount, *kept)
 
 
 def require_not_negative(fitter: str, **options: float | None) -> None:

@@ -32,17 +32,29 @@ def solved(matrix: Floats | csr_array, right: Floats) -> Floats:
     of all solutions that are the same function up to rounding, a small one is found. Raises FitError for an unknown
     that does not occur, and where no solution is reached.
     """
+    return solver_of(matrix)(right)
+
+
+def solver_of(matrix: Floats | csr_array) -> Solver:
+    """How to find what `solved` gives for any right-hand sides, each factor being made once, when it is needed."""
     diagonal = np.asarray(matrix.diagonal())
     _require_seen(diagonal)
     scale = 1 / np.sqrt(diagonal)
     scaled = _scaled(matrix, scale)
-    wanted = scale[:, None] * right
-    for shift in _SHIFTS:
-        solve = _factored(scaled, shift)
-        found = None if solve is None else _iterated(scaled, wanted, solve)
-        if found is not None:
-            return np.asarray(scale[:, None] * found)
-    raise _undetermined(len(diagonal))
+    factors: dict[float, Solver | None] = {}
+
+    def solve(right: Floats) -> Floats:
+        wanted = scale[:, None] * right
+        for shift in _SHIFTS:
+            if shift not in factors:
+                factors[shift] = _factored(scaled, shift)
+            factor = factors[shift]
+            found = None if factor is None else _iterated(scaled, wanted, factor)
+            if found is not None:
+                return np.asarray(scale[:, None] * found)
+        raise _undetermined(len(diagonal))
+
+    return solve
 
 
 def nearly_solved(blocks: list[list[Floats]] | list[list[csr_array]], right: Floats) -> Floats:

@@ -135,13 +135,14 @@ class Plan:
         resolved = self._known(tables)
         if seed is not None:
             tables, resolved = _seeded(tables, seed, resolved), {**resolved, "seed": seed}
-        settings = self.study.settings
+        settings, like = self.study.settings, resolved["config"]["map"]["like"]
         content = {
             "mesh": self._mesh_key(mesh),
             "suffix": mesh.suffix.lower(),
             "noise": settings.noise,
             "keep": sorted(settings.keep),
             "plugins": self._files,
+            "like": None if like is None else self._mesh_key(Path(like)),
             **resolved,
         }
         return Fit(content_key(content), mesh.absolute(), self._name(mesh), tables, case.name, dict(swept), seed)

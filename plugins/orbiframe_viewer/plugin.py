@@ -7,13 +7,19 @@ from orbiframe.plugin import Component, hookimpl
 
 @hookimpl
 def orbiframe_components() -> list[Component]:
-    """The command that shows a surface."""
+    """The commands that show a surface, and edit one."""
     return [
         Component(
             "command",
             "view",
             "orbiframe_viewer.view_command:configure",
             "look at a mesh, a saved surface or a field in the browser",
+        ),
+        Component(
+            "command",
+            "edit",
+            "orbiframe_viewer.edit_command:configure",
+            "drag the vertices of a mesh in the browser, and the surface follows",
         ),
     ]
 

@@ -48,7 +48,7 @@ def surface_scene(surface: OrbifoldSurface, polyhedron: Polyhedron | None, name:
         curves = edge_curves(surface, polyhedron, steps=_STEPS)
         scene["edges"] = _pieces((curves - surface.origin) / surface.scale)
     if fine.mesh.face_count == density**2 * count:
-        scene["xh"] = _xh(surface, polyhedron, density)
+        scene["xh"] = xh_scene(surface, polyhedron, density)
     return scene
 
 
@@ -71,12 +71,12 @@ def _scene(mesh: Polyhedron, given: Polyhedron, origin: Floats, scale: float, na
         "name": name,
         "origin": [float(x) for x in origin],
         "scale": float(scale),
-        "position": _packed((mesh.vertices - origin) / scale),
-        "normal": None if mesh.normals is None else _packed(mesh.normals),
-        "index": _packed(corners, np.uint32),
+        "position": packed((mesh.vertices - origin) / scale),
+        "normal": None if mesh.normals is None else packed(mesh.normals),
+        "index": packed(corners, np.uint32),
         "input": {
-            "position": _packed(faces[_triangles(given)]),
-            "lines": _packed(faces[ends]) if len(ends) <= 10 * _MOST_EDGES else _packed(faces[:0]),
+            "position": packed(faces[_triangles(given)]),
+            "lines": packed(faces[ends]) if len(ends) <= 10 * _MOST_EDGES else packed(faces[:0]),
             "words": f"{len(given.vertices)} vertices, {given.face_count} faces",
         },
         "edges": None,
@@ -91,7 +91,7 @@ def _triangles(mesh: Polyhedron) -> NDArray[np.intp]:
     return triangulated(mesh).triangles if (mesh.face_sizes != 3).any() else mesh.triangles
 
 
-def _xh(surface: OrbifoldSurface, polyhedron: Polyhedron | None, density: int) -> dict[str, Any]:
+def xh_scene(surface: OrbifoldSurface, polyhedron: Polyhedron | None, density: int) -> dict[str, Any]:
     """One lift of every fine triangle to X, the edges of the input there, and those of copies round about."""
     flat, geometry = surface.triangulation, surface.orbifold.geometry
     grid = _grid(density)
@@ -107,7 +107,7 @@ def _xh(surface: OrbifoldSurface, polyhedron: Polyhedron | None, density: int) -
     far = np.concatenate(list(_copies(surface, geometry, homes, len(edges))) or [edges[:0]])
     return {
         "geometry": geometry.name,
-        "position": _packed(_placed(geometry, fine)),
+        "position": packed(_placed(geometry, fine)),
         "edges": _pieces(lifted * _placed(geometry, edges)),
         "far": _pieces(_placed(geometry, far)),
     }
@@ -159,13 +159,14 @@ def _value(name: str, title: str, values: Floats, kind: str) -> dict[str, Any]:
         low, high = -reach, reach
     else:
         low, high = float(finite.min()), float(np.quantile(finite, 0.995))
-    return {"name": name, "title": title, "kind": kind, "low": low, "high": high, "data": _packed(values)}
+    return {"name": name, "title": title, "kind": kind, "low": low, "high": high, "data": packed(values)}
 
 
 def _pieces(chains: Floats) -> str:
     """Chains of points (n, m, 3) as pairs of neighbours."""
-    return _packed(np.stack([chains[:, :-1], chains[:, 1:]], axis=2))
+    return packed(np.stack([chains[:, :-1], chains[:, 1:]], axis=2))
 
 
-def _packed(values: Any, kind: Any = np.float32) -> str:
+def packed(values: Any, kind: Any = np.float32) -> str:
+    """An array as text: its bytes in base64."""
     return base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode("ascii")

@@ -22,7 +22,7 @@ def static_page(scenes: Sequence[Scene], png: bytes, title: str) -> str:
     image = f'<img alt="{escape(title)}" src="data:image/png;base64,{base64.b64encode(png).decode()}">'
     page = part("index.html").replace("<!--picture-->", image).replace("<title>", f"<title>{escape(title)} – ")
     page = page.replace('<link rel="stylesheet" href="viewer.css">', f"<style>{part('viewer.css')}</style>")
-    scripts = (f"<script>{part('three.min.js')}</script><script>window.SCENES={data}</script>", part("viewer.js"))
-    return page.replace('<script src="three.min.js"></script>', scripts[0]).replace(
-        '<script src="viewer.js"></script>', f"<script>{scripts[1]}</script>"
-    )
+    page = page.replace('<script src="viewer.js">', f'<script>window.SCENES={data}</script><script src="viewer.js">')
+    for name in ("three.min.js", "panes.js", "viewer.js"):
+        page = page.replace(f'<script src="{name}"></script>', f"<script>{part(name)}</script>")
+    return page

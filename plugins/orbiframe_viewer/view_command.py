@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from orbiframe import FormatError, Registry, UsageError
-from orbiframe.files import located, require_apart, require_output
+from orbiframe.files import add_repairs, located, repaired, repairs_asked, require_apart, require_output
+
+if TYPE_CHECKING:
+    from orbiframe import Polyhedron
 
 _LAST_WORD = 3.0  # seconds that a page has to hear of an error
 
@@ -26,6 +31,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=200")
     add("--port", metavar="N", type=int, default=0, help="of the address; default: one that is free")
     add("--no-browser", action="store_true", help="print the address and open no browser")
+    add_repairs(parser)
     parser.set_defaults(run=run)
 
 
@@ -53,14 +59,15 @@ def _write(args: argparse.Namespace, config: object, registry: Registry) -> int:
     require_apart({"-o": args.output}, {"the input": args.file, "--config": args.config})
     require_output(args.output)
     assert isinstance(config, Config)
-    scenes, png = scenes_of(args.file, config, registry, args.progress)
+    scenes, png = scenes_of(args.file, config, registry, args.progress, _repair(args))
     write_text(args.output, static_page(scenes, png, args.file.stem))
     return 0
 
 
 def _serve(args: argparse.Namespace, config: object, registry: Registry) -> int:
     from orbiframe import Config
-    from orbiframe_viewer.server import Session, address, serve
+    from orbiframe_viewer.server import address, serve
+    from orbiframe_viewer.session import Session
     from orbiframe_viewer.shown_file import scenes_of
 
     assert isinstance(config, Config)
@@ -80,7 +87,7 @@ def _serve(args: argparse.Namespace, config: object, registry: Registry) -> int:
         args.progress(stage, seconds)
 
     try:
-        session.finish(scenes_of(args.file, config, registry, told)[0])
+        session.finish(scenes_of(args.file, config, registry, told, _repair(args))[0])
         args.progress.close()
         args.progress.rest()
         while True:
@@ -94,6 +101,11 @@ def _serve(args: argparse.Namespace, config: object, registry: Registry) -> int:
         raise
     finally:
         server.shutdown()
+
+
+def _repair(args: argparse.Namespace) -> Callable[[Polyhedron], Polyhedron] | None:
+    """The repairs that are asked for, if any."""
+    return (lambda mesh: repaired(mesh, args, args.say)) if repairs_asked(args) else None
 
 
 def _open(where: str) -> None:

@@ -68,7 +68,7 @@ def test_a_notebook_shows_a_picture_and_the_report(result):
 def test_words_are_no_markup(result):
     report = copy.deepcopy(result.report)
     report["notes"] = ["<script>"]
-    page = type(result)(result.surface, result.output, report, result.input)._repr_html_()
+    page = type(result)(result.surface, result.output, report, result.input, result.samples)._repr_html_()
     assert "<script>" not in page
     assert "&lt;script&gt;" in page
 

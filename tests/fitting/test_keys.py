@@ -77,5 +77,5 @@ def test_what_is_no_override_is_refused(overrides, said):
 def test_resolved_options_are_all_that_a_fit_uses():
     found = Config.load(overrides={"basis.name": "dms", "basis.degree": 4}).resolved(REGISTRY)
     assert found["basis"] == {"name": "dms", "size": None, "degree": 4, "condensed": True, "radius": 0.2}
-    assert found["map"] == {"method": "auto"}
+    assert found["map"] == {"method": "auto", "like": None}
     assert (found["output"]["refine"], found["data"]["lift"]) == (None, True)

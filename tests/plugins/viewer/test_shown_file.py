@@ -93,7 +93,7 @@ def test_a_surface_shows_itself_in_notebooks_and_as_a_picture_without_javascript
     assert bundle["text/html"].startswith("<iframe srcdoc=")
     shown.save(tmp_path / "torus.html")
     text = (tmp_path / "torus.html").read_text()
-    assert text.count("<script") == text.count("</script>") == 3
+    assert text.count("<script") == text.count("</script>") == 4
     before, _, rest = text.partition("<noscript>")
     assert "<script" not in before
     assert 'src="data:image/png' in rest.partition("</noscript>")[0]

@@ -11,7 +11,8 @@ import pytest
 from browsers import asked_for
 from fitted import DATASETS, fitted
 from orbiframe_viewer.scene import surface_scene
-from orbiframe_viewer.server import Session, address, serve
+from orbiframe_viewer.server import address, serve
+from orbiframe_viewer.session import Session
 
 STATE = "return document.body.dataset.state"
 

@@ -1,4 +1,4 @@
-"""Repairs on the command line: options that change a mesh, in a fixed order, each saying what it did."""
+"""Repair options: what a command may change of a mesh, in a fixed order, each saying what it did."""
 
 from __future__ import annotations
 
@@ -6,8 +6,6 @@ import argparse
 import math
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
-
-from orbiframe.cli.speech import say
 
 if TYPE_CHECKING:
     from orbiframe.meshes.polyhedron import Polyhedron
@@ -33,14 +31,16 @@ def repairs_asked(args: argparse.Namespace) -> bool:
     return any(True for _ in _asked(args))
 
 
-def repaired(polyhedron: Polyhedron, args: argparse.Namespace, *, title: str = "", quiet: bool = False) -> Polyhedron:
-    """The polyhedron after all repairs that are asked for; what each did is said, under the title."""
+def repaired(
+    polyhedron: Polyhedron, args: argparse.Namespace, say: Callable[[str], None] | None, *, title: str = ""
+) -> Polyhedron:
+    """The polyhedron after all repairs that are asked for; what each did is said, under the title, to who listens."""
     from orbiframe.meshes import repair
 
     for name, arguments in _asked(args):
         function: Callable[..., Repair] = getattr(repair, name)
         polyhedron, said = function(polyhedron, *arguments)
-        if not quiet:
+        if say is not None:
             say(f"{title}{name.replace('_', '-')}: {said}")
     return polyhedron
 
