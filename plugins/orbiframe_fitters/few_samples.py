@@ -24,9 +24,9 @@ def few_samples(basis: Basis, samples: Samples) -> Samples:
     """Samples of which no function has more than it needs; their weights and areas are those of all.
 
     Those at which one function is the largest make a group, and of a group as many are left out between any two that
-    are kept, in the order of a curve that fills it; samples that count are kept apart from those of fairness alone.
-    Returns the samples themselves where they are cheap, where that would leave out less than half, and where some do not
-    slide.
+    are kept, in the order of a curve that fills it; samples that count are kept apart from those of fairness alone, and
+    those that are held all remain. Returns the samples themselves where they are cheap, where that would leave out less
+    than half, and along creases, where some do not slide.
     """
     if samples.still is not None or len(samples.weights) <= max(2 * _PER_FUNCTION * basis.size, _CHEAP):
         return samples
@@ -36,7 +36,9 @@ def few_samples(basis: Basis, samples: Samples) -> Samples:
         largest.append(_largest(basis.design_matrix(part.points)))
     place = np.concatenate(order)
     group = 2 * np.concatenate(largest) + (samples.weights[place] > 0)
-    kept, group_of = _kept(place, group)
+    if samples.held is not None:
+        group[samples.held[place]] = 2 * basis.size
+    kept, group_of = _kept(place, group, 2 * basis.size)
     if 2 * len(kept) > len(samples.weights):
         return samples
     found = samples.take(kept)
@@ -55,12 +57,14 @@ def _largest(rows: csr_array) -> Ints:
     return found
 
 
-def _kept(place: Ints, group: Ints) -> tuple[Ints, Ints]:
-    """The samples that are kept, and the group of each."""
+def _kept(place: Ints, group: Ints, whole: int) -> tuple[Ints, Ints]:
+    """The samples that are kept, and the group of each; from group `whole` on all are."""
     order = np.argsort(group, kind="stable")
     count = np.bincount(group)
     rank = np.arange(len(group)) - np.repeat(np.cumsum(count) - count, count)
-    share = np.minimum(_PER_FUNCTION / np.maximum(count, 1), 1.0)[group[order]]
+    wanted = np.minimum(_PER_FUNCTION / np.maximum(count, 1), 1.0)
+    wanted[whole:] = 1.0
+    share = wanted[group[order]]
     chosen = order[np.floor((rank + 1) * share + 1e-9) > np.floor(rank * share + 1e-9)]
     return place[chosen], group[chosen]
 

@@ -225,6 +225,17 @@ def test_few_samples_stand_for_all(monkeypatch, mapped) -> None:
     np.testing.assert_allclose(total["shares"], wanted["shares"], rtol=1e-12)
 
 
+def test_held_samples_all_remain(monkeypatch, mapped) -> None:
+    monkeypatch.setattr(few_samples, "_CHEAP", 0)
+    noisy = noisy_torus(mapped)
+    held = np.arange(len(noisy.weights)) % 100 < 9
+    basis = Gaussian(mapped.orbifold, mapped, size=40)
+    few = few_samples.few_samples(basis, replace(noisy, held=held))
+    assert few.held.sum() == held.sum()
+    assert len(few.weights) <= 24 * 40 + held.sum()
+    np.testing.assert_allclose(np.sort(few.weights[few.held]), np.sort(noisy.weights[held]), rtol=1e-12)
+
+
 def noisy_torus(mapped) -> Samples:
     """Points of the torus, each moved by a fiftieth of its smaller radius, at places drawn at random."""
     rng = np.random.default_rng(1)
