@@ -12,6 +12,7 @@ from orbiframe.components.options import options_of, place_of
 from orbiframe.errors import ConfigError, FitError
 from orbiframe.fitting.accuracy import Accuracy, accuracy_of
 from orbiframe.fitting.config import Config
+from orbiframe.fitting.fixed_points import with_fixed
 from orbiframe.fitting.made import made, made_coefficients
 from orbiframe.fitting.mapping import Mapped, Mapping
 from orbiframe.fitting.meaning import Meaning, meaning_of
@@ -78,7 +79,7 @@ class Approximations:
                 mapped = self._lifted(mapped, basis, meaning)
                 basis = self._basis(mapped, size)
             fitter = self._fitter()
-            samples, surface = self._surface(mapped, basis, meaning, fitter)
+            samples, surface = self._surface(mapped, basis, meaning, fitter, self.config)
             surface = self._moved(surface)
             accuracy = self.stages("error", accuracy_of, surface)
         except FitError as error:
@@ -139,7 +140,8 @@ class Approximations:
     def _lifted(self, mapped: Mapped, basis: Basis, meaning: Meaning) -> Mapped:
         """The map of the mesh with all its vertices on a first surface, so that it has no facets to show."""
         first = self.stages.registry.load("fitter", _FIRST_FITTER)()
-        surface = self._surface(mapped, basis, meaning, first)[1]
+        free = replace(self.config, data=replace(self.config.data, fixed=()))
+        surface = self._surface(mapped, basis, meaning, first, free)[1]
         flat = mapped.triangulation
         there = surface.evaluate(Points(flat.patch, flat.points))
         if flat.inside is not None:
@@ -150,10 +152,11 @@ class Approximations:
         return self.mapping.of_lifted(mapped, flat.polyhedron.with_vertices(there))
 
     def _surface(
-        self, mapped: Mapped, basis: Basis, meaning: Meaning, fitter: Fitter
+        self, mapped: Mapped, basis: Basis, meaning: Meaning, fitter: Fitter, config: Config
     ) -> tuple[Samples, OrbifoldSurface]:
-        triangulation, refinement, noise = mapped.triangulation, mapped.refinement, self.config.data.noise
+        triangulation, refinement, noise = mapped.triangulation, mapped.refinement, config.data.noise
         samples = self.stages("samples", meaning.samples, triangulation, refinement, basis.size, noise)
+        samples = with_fixed(samples, self.mapping, mapped, config)
         found = self.stages("fit", fitter.fit, basis, samples)
         coefficients = made_coefficients(
             self.stages.registry, self.config.fitter.name, found, (basis.size, samples.values.shape[1])

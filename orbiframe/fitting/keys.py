@@ -62,6 +62,8 @@ _RESULT_MEANINGS = {
     "validation",
     "data.creases": "edges of the mesh that bend by so many degrees or more stay sharp; if not given, the surface is "
     "smooth everywhere",
+    "data.fixed": "points that the surface passes through exactly: lists of x, y, z, or of x, y, z and a normal nx, "
+    "ny, nz that it has there, in lengths of the mesh; each at the nearest point of the mesh",
     "output.refine": "every triangle of the input becomes refine² triangles; if not given, the refined mesh is "
     "cut, about 40 000 triangles in all, of even size",
     "output.tolerance": "largest root mean square error, relative to the diagonal of the bounding box; if given, "

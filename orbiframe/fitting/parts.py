@@ -75,10 +75,10 @@ def _fitted(
     if count == 1:
         only = fit(whole, config, registry, progress, maps=maps, like=like)
         return Parts((only,), only.output, only.report)
-    if like is not None or config.like is not None or config.output.moved:
+    if like is not None or config.like is not None or config.output.moved or config.data.fixed:
         raise UsageError(
-            f"the mesh has {count} components, and a map that is taken over (--like, map.like) and coefficients that "
-            "are moved (output.moved) are those of one; choose one with --component N"
+            f"the mesh has {count} components, and a map that is taken over (--like, map.like), coefficients that are "
+            "moved (output.moved) and fixed points (data.fixed) are those of one; choose one with --component N"
         )
     pieces = [component(whole, number).polyhedron for number in range(1, count + 1)]
     areas = np.array([np.linalg.norm(vector_areas(piece), axis=1).sum() for piece in pieces])

@@ -71,6 +71,7 @@ def report(
             "reason": found.meaning.reason,
             "bend_share": found.meaning.bend_share,
             "girth_energy": found.energy,
+            "fixed": len(config.data.fixed),
         },
         "fit": {
             "basis": config.basis.name,

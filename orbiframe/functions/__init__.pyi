@@ -15,6 +15,6 @@ from .fitter import (
 )
 from .jet_quotient import divide_jets as divide_jets
 from .orbit_sum_basis import OrbitSumBasis as OrbitSumBasis
-from .samples import Samples as Samples, coordinate_samples as coordinate_samples
+from .samples import Samples as Samples, coordinate_samples as coordinate_samples, joined as joined
 from .samples_of_sides import Sides as Sides, crease_samples as crease_samples
 from .smooth_samples import semi_smooth_samples as semi_smooth_samples, vertex_samples as vertex_samples

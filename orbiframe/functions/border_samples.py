@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.functions.samples import Samples
+from orbiframe.functions.samples import Samples, joined
 from orbiframe.functions.smooth_samples import inside_facets, sagittas
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -44,10 +41,10 @@ def with_border(
     if not len(triangulation.border):
         return samples
     if not arcs:
-        return _joined(samples, _along(triangulation, refinement, spacing, np.ones(len(triangulation.border))))
-    given = _joined(samples, _at_vertices(triangulation, refinement, spacing))
+        return joined(samples, _along(triangulation, refinement, spacing, np.ones(len(triangulation.border))))
+    given = joined(samples, _at_vertices(triangulation, refinement, spacing))
     straight = _straight(triangulation, refinement, spacing)
-    return _joined(given, _along(triangulation, refinement, spacing, straight))
+    return joined(given, _along(triangulation, refinement, spacing, straight))
 
 
 def _at_vertices(triangulation: Triangulation, refinement: Bisection, spacing: float) -> Samples:
@@ -128,23 +125,3 @@ def _held(points: Points, values: Floats, weights: Floats) -> Samples:
     count = len(weights)
     none = np.zeros(count)
     return Samples(points, values, weights, none, none, none, held=np.ones(count, dtype=np.bool_))
-
-
-def _joined(a: Samples, b: Samples) -> Samples:
-    """The samples of both; `b` are held."""
-    count = len(a.weights)
-    held = np.zeros(count, dtype=np.bool_) if a.held is None else a.held
-
-    def both(first: Any, second: Any) -> Any:
-        return np.concatenate([first, second])
-
-    return replace(
-        a,
-        points=Points(both(a.points.patch, b.points.patch), both(a.points.x, b.points.x)),
-        values=both(a.values, b.values),
-        weights=both(a.weights, b.weights),
-        stretch=both(a.stretch, b.stretch),
-        area=both(a.shares, b.shares),
-        length=None if a.length is None else both(a.length, b.length),
-        held=both(held, b.held),
-    )

@@ -105,6 +105,32 @@ class Samples:
         return Samples(points, *numbers, area, length, self.order, self.noise, *marks)
 
 
+def joined(a: Samples, b: Samples) -> Samples:
+    """The samples of both, with what only one of them knows as unknown, or as not marked, at those of the other.
+
+    Lengths, order and noise are those of the first, if it has any.
+    """
+    unknown = {"normals": np.nan, "slopes": np.nan, "still": False, "held": False, "fixed": False}
+    tables: dict[str, Any] = {name: _both(a, b, name, value) for name, value in unknown.items()}
+    tables |= {name: np.concatenate([getattr(a, name), getattr(b, name)]) for name in ("values", "weights", "stretch")}
+    tables |= {"area": np.concatenate([a.shares, b.shares]), "length": a.length}
+    if a.length is not None:
+        tables["length"] = np.concatenate([a.length, np.zeros(len(b.weights)) if b.length is None else b.length])
+    points = Points(np.concatenate([a.points.patch, b.points.patch]), np.concatenate([a.points.x, b.points.x]))
+    return Samples(points, order=a.order, noise=a.noise, **tables)
+
+
+def _both(a: Samples, b: Samples, name: str, unknown: float) -> Any:
+    """A table of both, with a value where one of them has none."""
+    tables = [getattr(samples, name) for samples in (a, b)]
+    known = [table for table in tables if table is not None]
+    if not known:
+        return None
+    counts = [len(samples.weights) for samples in (a, b)]
+    filled = (np.full((count, *known[0].shape[1:]), unknown, known[0].dtype) for count in counts)
+    return np.concatenate([fill if table is None else table for table, fill in zip(tables, filled, strict=True)])
+
+
 def _taken(table: Any, chosen: Ints) -> Any:
     """The chosen rows of a table, if there is one."""
     return None if table is None else table[chosen]

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.delaunay.crease_domain import crease_triangulation
-from orbiframe.functions.samples import Samples, places
+from orbiframe.functions.samples import Samples, joined, places
 from orbiframe.functions.smooth_samples import lengths, sagittas
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.crease_sides import corner_sides, side_normals
@@ -114,9 +114,7 @@ def crease_samples(
         normals=normals,
         still=~bent | np.concatenate([sides.parted, np.zeros(flat.face_count, dtype=np.bool_)]),
     )
-    samples = _joined(
-        samples, _within_small(triangulation, refinement, samples, bent[len(sides.vertex) :], share, long)
-    )
+    samples = joined(samples, _within_small(triangulation, refinement, samples, bent[len(sides.vertex) :], share, long))
     return samples.take(np.flatnonzero((samples.weights > 0) | (samples.shares > 0)))
 
 
@@ -155,17 +153,6 @@ def _within_small(
         normals=normals,
         still=~bent[face],
     )
-
-
-def _joined(a: Samples, b: Samples) -> Samples:
-    """The samples of both."""
-
-    def both(name: str) -> Any:
-        return np.concatenate([getattr(a, name), getattr(b, name)])
-
-    points = Points(np.concatenate([a.points.patch, b.points.patch]), np.concatenate([a.points.x, b.points.x]))
-    tables = {name: both(name) for name in ("values", "weights", "stretch", "area", "length", "normals", "still")}
-    return Samples(points, order=a.order, **tables)
 
 
 def _lengths_of_facets(triangulation: Triangulation, refinement: Bisection) -> Floats:

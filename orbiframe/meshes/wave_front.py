@@ -15,6 +15,9 @@ Ints = NDArray[np.intp]
 
 # A front that comes earlier by less than this share is the same.
 _EARLIER = 1 - 1e-12
+# Beyond blunt corners a front may come before the one that was there; so many times a vertex is taken up again. Then it
+# only takes what comes in order, so that the search ends on triangles of any shape.
+_AGAIN = 64
 
 
 def front_distances(mesh: Polyhedron, start: Ints, distance: Floats) -> Floats:
@@ -56,6 +59,7 @@ def _all_sides(first, second, base, here, there, found):  # type: ignore[no-unty
 def _spread(corners, sides, first, order, start, found):  # type: ignore[no-untyped-def]
     """Vertices in the order in which the wave comes; one that it reaches earlier than it did is taken up again."""
     waiting = [(found[v], v) for v in start]
+    left = np.full(len(found), _AGAIN)
     heapq.heapify(waiting)
     while len(waiting):
         time, v = heapq.heappop(waiting)
@@ -72,8 +76,9 @@ def _spread(corners, sides, first, order, start, found):  # type: ignore[no-unty
                 else:
                     here, there, base = sides[face, own], sides[face, other], sides[face, corner]
                 reached = through_side(time, found[third], base, here, there)
-                if reached < _EARLIER * found[target]:
+                if reached < _EARLIER * found[target] and (left[target] > 0 or reached >= time):
                     found[target] = reached
+                    left[target] -= 1
                     heapq.heappush(waiting, (reached, target))
 
 

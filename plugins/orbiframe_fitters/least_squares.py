@@ -133,7 +133,10 @@ def require_not_negative(fitter: str, **options: float | None) -> None:
 def require_values_alone(samples: Samples) -> None:
     """Raises FitError for slopes and fixed samples, of which least squares and sliding know nothing."""
     if samples.slopes is not None or samples.fixed is not None:
-        raise FitError("slopes and fixed samples are for the fitters 'smoothing' and 'robust'; choose one of them")
+        raise FitError(
+            "slopes are data for the fitters 'smoothing' and 'robust' alone, fixed samples also for 'sliding'; choose "
+            "one of them (fitter.name)"
+        )
 
 
 def require_rows(basis: Basis, samples: Samples, fairing: float | None) -> None:

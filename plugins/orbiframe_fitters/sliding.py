@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,6 +19,7 @@ from orbiframe_fitters.gram import Gram
 from orbiframe_fitters.kinks import Kinks
 from orbiframe_fitters.least_squares import chunks, linear_fit, require_not_negative
 from orbiframe_fitters.normal_equations import nearly_solved, solved
+from orbiframe_fitters.pinned import pinned
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -70,6 +71,8 @@ class Sliding(Fitter):
     fairing, with the normal n at f and t = d / (d + rho) for the distance d and the smaller radius of curvature rho:
     Gauss and Newton's method, exact to second order. Fairness is measured in the metric of the surface as it is. Only
     three coordinates make a surface: other values, and functions without derivatives, are fitted by least squares.
+    Fixed samples take no part; then the surface moves, as little as all samples and fairness allow, until it meets them
+    and has their normals.
 
     fairing: how strongly ripples are damped, as in `least-squares`; by default that of each step, less than there,
     because far fewer conditions are set; steps: at most so many; it stops by itself when the distance falls no more.
@@ -84,6 +87,11 @@ class Sliding(Fitter):
 
     def fit(self, basis: Basis, samples: Samples) -> Floats:
         """The coefficients (size, d); see the class."""
+        if samples.fixed is not None and samples.fixed.any():
+            free = samples.take(np.flatnonzero(~samples.fixed))
+            known = free.normals is not None and np.isfinite(free.normals).any()
+            found = self.fit(basis, replace(free, fixed=None, normals=free.normals if known else None))
+            return pinned(basis, samples, found, self.fairing)
         first = linear_fit(basis, samples, self.fairing)
         if samples.values.shape[1] != 3 or not isinstance(basis, DifferentiableBasis):
             return first.coefficients

@@ -59,9 +59,10 @@ def validated(
     noise: the standard deviation of the values, (d,), by default by what is left out.
     """
     about = system.soft if len(system.weights) else system.exact
-    told = np.unique(about.sample)[drawn_of(len(about.places), _TOLD)]
+    told = np.unique(about.sample)
+    told = told if len(found.left_out) == len(told) else told[drawn_of(len(told), _TOLD)][: len(found.left_out)]
     errors = np.full(samples.values.shape, np.nan)
-    errors[told[: len(found.left_out)]] = found.left_out
+    errors[told] = found.left_out
     mean = float(system.weights[system.soft.kind == 0].mean()) if len(system.weights) else np.inf
     unit = found.noise if noise is None else noise * np.sqrt(mean)
     posterior = found.posterior

@@ -286,7 +286,7 @@ def test_what_does_not_fit_is_said(torus):
     with pytest.raises(FitError, match="fixed has the shape"):
         torus.fit_field(points, np.zeros(4), fixed=[0, 1])
     plain = REGISTRY.load("fitter", "least-squares")()
-    with pytest.raises(FitError, match="fixed samples are for"):
+    with pytest.raises(FitError, match="fixed samples also for"):
         torus.fit_field(points, np.zeros(4), fixed=np.ones(4, dtype=bool), fitter=plain)
     field = torus.fit_field(scattered(torus, 900), np.zeros(900), fitter=plain)
     with pytest.raises(FitError, match="tells no standard errors"):
