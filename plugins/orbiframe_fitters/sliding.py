@@ -2,53 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from dataclasses import replace
 
 import numpy as np
-import scipy.sparse
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
-from orbiframe import Basis, DifferentiableBasis, Fitter, Points, Samples
-from orbiframe.functions import foot_points, foot_step, moved
-from orbiframe.workers import in_threads
-from orbiframe_fitters.energy import FAIRING, Energy, energy_of, spacing
+from orbiframe import Basis, DifferentiableBasis, Fitter, Samples
+from orbiframe_fitters.energy import FAIRING
 from orbiframe_fitters.few_samples import few_samples
-from orbiframe_fitters.gram import Gram
-from orbiframe_fitters.kinks import Kinks
-from orbiframe_fitters.least_squares import chunks, linear_fit, require_not_negative
-from orbiframe_fitters.normal_equations import nearly_solved, solved
+from orbiframe_fitters.least_squares import linear_fit, require_not_negative
 from orbiframe_fitters.pinned import pinned
+from orbiframe_fitters.slide import Slide
+from orbiframe_fitters.sliding_data import Schedule
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
-Bools = NDArray[np.bool_]
-
-_PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
-_KIND = np.array([[0, 1, 2], [1, 3, 4], [2, 4, 5]])
-# A foot moves at most so many lengths of fairness in one step, and the surface is stretched at most so much in fairing.
-_LONGEST_STEP = 0.3
-_MOST_STRETCH = 30.0
-# A step that leaves more than this share of the distance is the last one.
-_GAIN = 0.97
-# With creases at least so many, for planes become flat while curved sides have long settled.
-_LEAST_STEPS = 4
-# A smooth surface is shrunk to at least so much in one step at every datum: beyond, a limb is being pinched off.
-_LEAST_SHARE = 0.35
-# So many steps of Newton's lead data that were left out so far to their feet.
-_ALL_STEPS = 2
-# Up to so many functions the equations of a step are factored as a whole; of more, iteration takes less time.
-_DIRECT = 200
-
-
-class Schedule(NamedTuple):
-    """How steps weigh against each other: fairing, damping of tangential motion, and least pull along the surface."""
-
-    fairing: float
-    damping: float
-    pull: float
-
 
 # By the order of the energy; each entry holds until the next, the last one for all further steps.
 _SCHEDULES = {
@@ -59,8 +26,6 @@ _SCHEDULES = {
 # ones more damping and some pull keep parameters from gliding away.
 _FLAT = (Schedule(1e-5, 1e-3, 0.0), Schedule(1e-6, 1e-3, 0.0))
 _CURVED = (Schedule(1e-5, 1e-2, 1e-4), Schedule(1e-6, 1e-2, 1e-4))
-# How much a kink across a hair counts against a distance of what it would lift at the spacing of the functions.
-_KINK = 10.0
 
 
 class Sliding(Fitter):
@@ -97,7 +62,7 @@ class Sliding(Fitter):
             return first.coefficients
         schedules = self._schedules(basis, samples, first.fairing)
         few = few_samples(basis, samples)
-        slide = _Slide(basis, few, schedules)
+        slide = Slide(basis, few, schedules)
         found = slide.from_start(first.coefficients, self.steps)
         if few is samples or not self.steps:
             return found
@@ -112,284 +77,3 @@ class Sliding(Fitter):
         if self.fairing is None and fairing <= FAIRING[order]:
             return schedules
         return tuple(schedule._replace(fairing=fairing) for schedule in schedules)
-
-
-@dataclass(frozen=True, eq=False)
-class _Feet:
-    """Data and their feet on the surface: the points, the matrices of their jets, and the jets, (6, n, 3)."""
-
-    points: Points
-    matrices: list[csr_array]
-    jets: Floats
-    gap: Floats
-
-    @property
-    def distance(self) -> Floats:
-        return np.asarray(np.linalg.norm(self.gap, axis=1))
-
-    def under(self, coefficients: Floats, targets: Floats) -> _Feet:
-        """The same points on another surface."""
-        jets = _products(self.matrices, coefficients)
-        return _Feet(self.points, self.matrices, jets, targets - jets[0])
-
-    def replaced(self, rows: Ints, other: _Feet) -> _Feet:
-        """With the rows of another one, (k,) of them, in place of its own."""
-        patch, x, jets, gap = self.points.patch.copy(), self.points.x.copy(), self.jets.copy(), self.gap.copy()
-        patch[rows], x[rows], jets[:, rows], gap[rows] = other.points.patch, other.points.x, other.jets, other.gap
-        order = np.arange(len(gap))
-        order[rows] = len(gap) + np.arange(len(rows))
-        pairs = zip(self.matrices, other.matrices, strict=True)
-        return _Feet(Points(patch, x), [_stacked(a, b)[order] for a, b in pairs], jets, gap)
-
-    def take(self, rows: Ints) -> _Feet:
-        points = Points(self.points.patch[rows], self.points.x[rows])
-        return _Feet(points, [matrix[rows] for matrix in self.matrices], self.jets[:, rows], self.gap[rows])
-
-
-class _Fairness(NamedTuple):
-    """Samples where fairness is asked for: which of all, the rows of the energy, and those of the two slopes."""
-
-    chosen: Ints
-    rows: list[csr_array]
-    slopes: list[csr_array]
-
-
-class _Slide:
-    """The data of a sliding fit, chunk by chunk, and its steps."""
-
-    def __init__(self, basis: DifferentiableBasis, samples: Samples, schedules: tuple[Schedule, ...]) -> None:
-        self.basis, self.samples, self.schedules = basis, samples, schedules
-        self.energy = energy_of(basis, samples) if any(schedule.fairing for schedule in schedules) else None
-        self.data = [
-            part.take(np.flatnonzero(part.weights > 0)) for part, _ in chunks(samples) if (part.weights > 0).any()
-        ]
-        self.fairness = self._fairness(self.energy) if self.energy else []
-        self.kinks, self.creased = Kinks.of(basis), samples.still is not None
-        self.spacing = spacing(basis, samples)
-        length = np.full(len(samples.weights), self.spacing) if samples.length is None else samples.length
-        self.longest = [
-            _LONGEST_STEP * length[chosen[part.weights > 0]]
-            for part, chosen in chunks(samples)
-            if (part.weights > 0).any()
-        ]
-
-    def _fairness(self, energy: Energy) -> list[_Fairness]:
-        found = []
-        for part, chosen in chunks(self.samples):
-            jets = self.basis.jet_matrices(part.points, energy.order)
-            found.append(_Fairness(chosen, energy.rows(jets), jets[1:3]))
-        return found
-
-    def from_start(self, coefficients: Floats, steps: int) -> Floats:
-        """The coefficients after at most so many steps; a step that leads away is halved, then refused."""
-        feet = self._slid([self._feet(part.points, part.values, coefficients) for part in self.data], coefficients)
-        distance = self._distance(feet)
-        for step in range(steps):
-            change = self._change(feet, coefficients, self.schedules[min(step, len(self.schedules) - 1)])
-            before = distance
-            for share in (1.0, 0.5, 0.25):
-                trial = coefficients + share * change
-                if self._pinched(coefficients, trial):
-                    continue
-                there = self._slid(self._under(feet, trial), trial)
-                distance = self._distance(there)
-                if distance < before:
-                    break
-            else:
-                return coefficients
-            coefficients, feet = trial, there
-            if distance > _GAIN * before and step >= (_LEAST_STEPS if self.creased else len(self.schedules)) - 1:
-                break
-        return coefficients
-
-    def with_all(self, coefficients: Floats, samples: Samples, schedule: Schedule) -> Floats:
-        """The coefficients after one more step for which all samples count, each once and in no memory but its own."""
-        gram, right = self._empty()
-        longest = _LONGEST_STEP * self.spacing
-        for part, _ in chunks(samples.take(np.flatnonzero(samples.weights > 0))):
-            points, _ = foot_points(self.basis, coefficients, part.points, part.values, longest, _ALL_STEPS)
-            jets = self.basis.jets(points, coefficients, 2)
-            feet = _Feet(points, self.basis.jet_matrices(points, 0), jets, part.values - jets[0])
-            self._enter(gram, right, feet, part, schedule)
-        trial = coefficients + self._solved(gram, right, coefficients, schedule)
-        return coefficients if self._pinched(coefficients, trial) else trial
-
-    def _feet(self, points: Points, targets: Floats, coefficients: Floats) -> _Feet:
-        matrices = self.basis.jet_matrices(points, 2)
-        jets = _products(matrices, coefficients)
-        return _Feet(points, matrices, jets, targets - jets[0])
-
-    def _under(self, feet: list[_Feet], coefficients: Floats) -> list[_Feet]:
-        return [found.under(coefficients, part.values) for found, part in zip(feet, self.data, strict=True)]
-
-    def _distance(self, feet: list[_Feet]) -> float:
-        total = sum(float(part.weights @ _away(found, part) ** 2) for found, part in zip(feet, self.data, strict=True))
-        return float(np.sqrt(total / sum(part.weights.sum() for part in self.data)))
-
-    def _slid(self, feet: list[_Feet], coefficients: Floats) -> list[_Feet]:
-        """Every datum one step of Newton's method nearer to its foot."""
-        return [self._slid_part(*each, coefficients) for each in zip(feet, self.data, self.longest, strict=True)]
-
-    def _slid_part(self, feet: _Feet, part: Samples, longest: Floats, coefficients: Floats) -> _Feet:
-        kept = [mark for mark in (part.still, part.held) if mark is not None]
-        if kept:
-            return self._slid_some(feet, part, longest, coefficients, np.flatnonzero(~np.logical_or.reduce(kept)))
-        return self._slid_all(feet, part, longest, coefficients)
-
-    def _slid_some(self, feet: _Feet, part: Samples, longest: Floats, coefficients: Floats, chosen: Ints) -> _Feet:
-        """Only some of the data slide."""
-        if not len(chosen):
-            return feet
-        found = self._slid_all(feet.take(chosen), part.take(chosen), longest[chosen], coefficients)
-        return feet.replaced(chosen, found)
-
-    def _slid_all(self, feet: _Feet, part: Samples, longest: Floats, coefficients: Floats) -> _Feet:
-        step = foot_step(feet.jets, part.values, longest)
-        found = self._feet(moved(self.basis.orbifold, feet.points, step), part.values, coefficients)
-        for share in (1.0, 0.25):
-            worse = np.flatnonzero(~(found.distance < feet.distance))
-            if not len(worse):
-                return found
-            back = feet.take(worse)
-            step = share * foot_step(back.jets, part.values[worse], longest[worse], bent=False)
-            again = self._feet(moved(self.basis.orbifold, back.points, step), part.values[worse], coefficients)
-            found = found.replaced(worse, again)
-        worse = np.flatnonzero(~(found.distance < feet.distance))
-        return found.replaced(worse, feet.take(worse))
-
-    def _change(self, feet: list[_Feet], coefficients: Floats, schedule: Schedule) -> Floats:
-        """The change of the coefficients by one step of Gauss and Newton."""
-        gram, right = self._empty()
-        for found, part in zip(feet, self.data, strict=True):
-            self._enter(gram, right, found, part, schedule)
-        return self._solved(gram, right, coefficients, schedule)
-
-    def _empty(self) -> tuple[Gram, Floats]:
-        """The equations of a step before any data."""
-        return Gram(self.basis.size, 6, self._room), np.zeros((self.basis.size, 3))
-
-    @staticmethod
-    def _enter(gram: Gram, right: Floats, feet: _Feet, part: Samples, schedule: Schedule) -> None:
-        """Add some data to the equations of a step."""
-        weights, wanted = _linearised(feet, part, schedule)
-        gram.add(feet.matrices[0], weights)
-        right += feet.matrices[0].T @ wanted
-
-    def _solved(self, gram: Gram, right: Floats, coefficients: Floats, schedule: Schedule) -> Floats:
-        """The change of the coefficients by equations in which all data are entered; the rest is added here."""
-        if self.kinks is not None:
-            weights, wanted = self._smoothed(self.kinks, coefficients)
-            gram.add(self.kinks.jump, weights)
-            right += self.kinks.jump.T @ wanted
-        blocks: list[Any] = list(gram.matrices())
-        if self.energy is not None and schedule.fairing:
-            stiff: Any = schedule.fairing * self._stiffness(coefficients, self.energy)
-            right -= stiff @ coefficients
-            blocks = [block + stiff if kind in (0, 3, 5) else block for kind, block in enumerate(blocks)]
-        rows = [[blocks[kind] for kind in line] for line in _KIND]
-        if self.basis.size > _DIRECT and not self.creased:
-            return nearly_solved(rows, right)
-        return solved(_joined(rows), right.T.reshape(-1, 1)).reshape(3, -1).T
-
-    @property
-    def _room(self) -> float | None:
-        """Up to how many numbers matrices are dense: with creases the equations are solved as a whole, and sparse."""
-        return 0.0 if self.creased else None
-
-    def _smoothed(self, kinks: Kinks, coefficients: Floats) -> tuple[Floats, Floats]:
-        """For each point of a hair the six entries of the form of its kink, (n, 6), and its right side, (n, 3)."""
-        normal, kink = kinks.seen(coefficients)
-        size = np.linalg.norm(kinks.across @ coefficients, axis=1)
-        weight = _KINK * self.spacing**4 / np.maximum(size, np.finfo(float).tiny)
-        form = np.stack([normal[:, a] * normal[:, b] for a, b in _PAIRS], axis=1)
-        return (weight / size)[:, None] * form, -(weight * kink)[:, None] * normal
-
-    def _pinched(self, before: Floats, after: Floats) -> bool:
-        """Whether a smooth surface shrinks too much somewhere; facets may, where an edge becomes sharp."""
-        if self.energy is None or self.energy.order < 3:
-            return False
-        pairs = ((_elements(part, before), _elements(part, after)) for part in self.fairness)
-        return any((new < _LEAST_SHARE * old).any() for old, new in pairs)
-
-    def _stiffness(self, coefficients: Floats, energy: Energy) -> Floats | csr_array:
-        """The energy in the metric of the surface as it is."""
-        gram = Gram(self.basis.size, most=self._room)
-        for part in self.fairness:
-            chosen, rows, _ = part
-            stretch = np.minimum(1 / _elements(part, coefficients), _MOST_STRETCH * self.samples.stretch[chosen])
-            for row in rows:
-                gram.add(row, energy.weights(chosen, stretch))
-        return gram.matrices()[0]
-
-
-def _elements(part: _Fairness, coefficients: Floats) -> Floats:
-    """The elements of area of the surface at samples, positive."""
-    first, second = (slope @ coefficients for slope in part.slopes)
-    return np.asarray(np.maximum(np.linalg.norm(np.cross(first, second), axis=1), np.finfo(float).tiny))
-
-
-def _away(feet: _Feet, part: Samples) -> Floats:
-    """The distances of data from the surface, of those that keep their parameters from its tangent planes."""
-    if part.still is None:
-        return feet.distance
-    height = np.abs(np.einsum("ni,ni->n", feet.gap, _known_normals(feet, part)[0]))
-    return np.where(_planes(part), height, feet.distance)
-
-
-def _planes(part: Samples) -> Bools:
-    """The data that keep their parameters, and of which distances from planes count."""
-    assert part.still is not None
-    return part.still if part.held is None else part.still & ~part.held
-
-
-def _known_normals(feet: _Feet, part: Samples) -> tuple[Floats, Floats]:
-    """The unit normals (n, 3) of what the data lie on, where it is known, else of the surface; and its curvatures."""
-    normal, curvature = _normals(feet.jets)
-    if part.normals is None:
-        return normal, curvature
-    unknown = np.isnan(part.normals)
-    return np.where(unknown, normal, part.normals), curvature
-
-
-def _linearised(feet: _Feet, part: Samples, schedule: Schedule) -> tuple[Floats, Floats]:
-    """For each datum the six entries of its quadratic form, (n, 6), and its right side, (n, 3)."""
-    weights, (normal, curvature) = part.weights, _known_normals(feet, part)
-    away = np.linalg.norm(feet.gap, axis=1) * curvature
-    pull = np.maximum(schedule.pull, away / (1 + away))
-    pull = pull if part.still is None else np.where(_planes(part), schedule.pull, pull)
-    pull = pull if part.held is None else np.where(part.held, 1.0, pull)
-    along = pull + schedule.damping
-    form = np.stack([normal[:, a] * normal[:, b] for a, b in _PAIRS], axis=1) * np.maximum(1 - along, 0)[:, None]
-    form[:, [0, 3, 5]] += along[:, None]
-    height = np.einsum("ni,ni->n", feet.gap, normal)
-    wanted = normal * ((1 - pull) * height)[:, None] + pull[:, None] * feet.gap
-    return weights[:, None] * form, weights[:, None] * wanted
-
-
-def _normals(jets: Floats) -> tuple[Floats, Floats]:
-    """The unit normals (n, 3) and the larger principal curvatures (n,) of jets."""
-    cross = np.cross(jets[1], jets[2])
-    element = np.maximum(np.linalg.norm(cross, axis=1), np.finfo(float).tiny)
-    normal = cross / element[:, None]
-    e, f, g = (np.einsum("ni,ni->n", jets[a], jets[b]) for a, b in ((1, 1), (1, 2), (2, 2)))
-    bend, twist, other = (np.einsum("ni,ni->n", jets[k], normal) for k in (3, 4, 5))
-    with np.errstate(over="ignore"):
-        mean = (e * other - 2 * f * twist + g * bend) / (2 * element**2)
-        gaussian = (bend * other - twist**2) / element**2
-        curvature = np.abs(mean) + np.sqrt(np.maximum(mean**2 - gaussian, 0))
-    return normal, np.nan_to_num(curvature, posinf=np.finfo(float).max)
-
-
-def _joined(rows: list[list[Any]]) -> Floats | csr_array:
-    """The matrix of three coordinates from its blocks."""
-    if isinstance(rows[0][0], np.ndarray):
-        return np.block(rows)
-    return csr_array(scipy.sparse.block_array(rows))
-
-
-def _products(matrices: list[csr_array], coefficients: Floats) -> Floats:
-    return np.stack(list(in_threads(lambda matrix: np.asarray(matrix @ coefficients), matrices)))
-
-
-def _stacked(a: csr_array, b: csr_array) -> csr_array:
-    return csr_array(scipy.sparse.vstack([a, b], format="csr"))

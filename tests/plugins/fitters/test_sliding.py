@@ -12,7 +12,9 @@ from orbiframe_bases.gaussian import Gaussian
 from orbiframe_bases.powell_sabin import PowellSabin2, PowellSabin6
 from orbiframe_fitters import few_samples
 from orbiframe_fitters.least_squares import LeastSquares
-from orbiframe_fitters.sliding import Schedule, Sliding, _linearised, _normals, _Slide
+from orbiframe_fitters.slide import Slide
+from orbiframe_fitters.sliding import Sliding
+from orbiframe_fitters.sliding_data import Feet, Schedule, linearised, normals_of
 
 from orbiframe import Samples, UsageError
 from orbiframe.functions import coordinate_samples
@@ -92,7 +94,7 @@ def test_no_step_leads_away(mapped, exact) -> None:
     """The distance of the data to the surface falls from step to step."""
     basis = PowellSabin2(mapped.orbifold, mapped, size=200)
     first = LeastSquares().fit(basis, exact)
-    slide = _Slide(basis, exact, (Schedule(1e-4, 1e-2, 1e-3),))
+    slide = Slide(basis, exact, (Schedule(1e-4, 1e-2, 1e-3),))
     found = []
     for steps in range(4):
         coefficients = slide.from_start(first, steps)
@@ -114,7 +116,7 @@ def test_curvature_and_normals_of_a_torus() -> None:
     inward = np.stack([-ring * np.cos(u), -ring * np.sin(u), zero], axis=1)
     mixed = SMALL * np.stack([np.sin(v) * np.sin(u), -np.sin(v) * np.cos(u), zero], axis=1)
     back = -SMALL * np.stack([np.cos(v) * np.cos(u), np.cos(v) * np.sin(u), np.sin(v)], axis=1)
-    normal, curvature = _normals(np.stack([torus_points(u, v), along, across, inward, mixed, back]))
+    normal, curvature = normals_of(np.stack([torus_points(u, v), along, across, inward, mixed, back]))
     np.testing.assert_allclose(curvature, 1 / SMALL, rtol=1e-9)
     np.testing.assert_allclose(np.abs(np.einsum("ni,ni->n", normal, back)), SMALL, rtol=1e-9)
 
@@ -124,7 +126,6 @@ def test_the_pull_along_the_surface_is_that_of_the_squared_distance() -> None:
 
     (Pottmann, Leopoldseder and Hofer, 2002): here a cylinder of radius 2 seen from distance 0.5.
     """
-    from orbiframe_fitters.sliding import _Feet
 
     from orbiframe import Points
 
@@ -133,7 +134,7 @@ def test_the_pull_along_the_surface_is_that_of_the_squared_distance() -> None:
     gap = np.array([[0.5, 0.0, 0.0]])
     points = Points(np.zeros(1, int), np.eye(3)[:1])
     datum = Samples(points, jets[0] + gap, np.ones(1), np.ones(1))
-    form, wanted = _linearised(_Feet(points, [], jets, gap), datum, Schedule(0, 0, 0))
+    form, wanted = linearised(Feet(points, [], jets, gap), datum, Schedule(0, 0, 0))
     np.testing.assert_allclose(form, [[1, 0, 0, 0.5 / 2.5, 0, 0.5 / 2.5]], atol=1e-12)
     np.testing.assert_allclose(wanted, [[0.5, 0, 0]], atol=1e-12)
 
@@ -156,11 +157,11 @@ def test_no_step_is_the_linear_fit() -> None:
 @pytest.mark.parametrize("make", [Gaussian, PowellSabin6])
 def test_steps_of_many_functions_lead_where_those_of_few_do(make, mapped, exact, monkeypatch) -> None:
     """Equations solved by conjugate gradients to a few digits, and factored: nearly the same surface."""
-    from orbiframe_fitters import sliding
+    from orbiframe_fitters import slide
 
     basis = make(mapped.orbifold, mapped, size=200)
     direct = basis.values(exact.points, Sliding().fit(basis, exact))
-    monkeypatch.setattr(sliding, "_DIRECT", 0)
+    monkeypatch.setattr(slide, "_DIRECT", 0)
     iterated = basis.values(exact.points, Sliding().fit(basis, exact))
     assert np.abs(iterated - direct).max() < 0.05 * np.abs(direct - exact.values).max()
 
@@ -176,7 +177,7 @@ def test_a_smooth_surface_is_not_pinched_in_one_step(mapped) -> None:
     smooth = vertex_samples(mapped, whole)
     schedule = (Schedule(1e-6, 1e-4, 0.0),)
     coefficients = LeastSquares().fit(basis, smooth)
-    slide = _Slide(basis, smooth, schedule)
+    slide = Slide(basis, smooth, schedule)
     assert slide.energy is not None
     assert slide.energy.order == 3
     assert slide._pinched(coefficients, 0.5 * coefficients)  # a quarter of the area
@@ -185,7 +186,7 @@ def test_a_smooth_surface_is_not_pinched_in_one_step(mapped) -> None:
     near = 0.9 * np.exp(-((middle - middle[0]) ** 2).sum(axis=1) / 4)
     thinner = coefficients + near[:, None] * (middle[0] - coefficients)
     assert slide._pinched(coefficients, thinner)
-    assert not _Slide(basis, coordinate_samples(mapped), schedule)._pinched(coefficients, 0.1 * coefficients)
+    assert not Slide(basis, coordinate_samples(mapped), schedule)._pinched(coefficients, 0.1 * coefficients)
 
 
 def test_many_samples_count_though_few_slide(monkeypatch, mapped) -> None:
@@ -199,7 +200,7 @@ def test_many_samples_count_though_few_slide(monkeypatch, mapped) -> None:
     monkeypatch.setattr(few_samples, "_CHEAP", 1 << 30)
     there = off_torus(basis.values(noisy.points, Sliding().fit(basis, noisy)))
     monkeypatch.setattr(few_samples, "_CHEAP", 0)
-    monkeypatch.setattr(_Slide, "with_all", lambda _self, coefficients, *_: coefficients)
+    monkeypatch.setattr(Slide, "with_all", lambda _self, coefficients, *_: coefficients)
     alone = off_torus(basis.values(noisy.points, Sliding().fit(basis, noisy)))
     assert np.linalg.norm(here) < 1.05 * np.linalg.norm(there)
     assert np.linalg.norm(alone) > 1.3 * np.linalg.norm(there)
