@@ -41,3 +41,10 @@ def killed_once(mark) -> Callable[..., str]:
 
 def broken() -> None:
     raise RuntimeError("this task cannot be made")
+
+
+def counting_threads() -> Callable[..., int]:
+    """How many threads a process takes for each item."""
+    from orbiframe.workers import thread_count
+
+    return lambda _item, _tell: thread_count()

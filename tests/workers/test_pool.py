@@ -7,7 +7,7 @@ import threading
 import time
 
 import pytest
-from worker_tasks import adding, broken, killed_once
+from worker_tasks import adding, broken, counting_threads, killed_once
 
 from orbiframe.workers import peak_memory, processors, reset_peak, work
 
@@ -48,6 +48,13 @@ def test_processes_do_each_item_once_and_what_one_of_them_breaks_costs_nobody_el
         (4, "adds"),
         (5, "adds"),
     ]
+
+
+def test_each_of_several_processes_has_one_thread(monkeypatch):
+    monkeypatch.delenv("ORBIFRAME_THREADS", raising=False)
+    assert [outcome.result for outcome in work([1, 2], counting_threads, workers=2)] == [1, 1]
+    monkeypatch.setenv("ORBIFRAME_THREADS", "3")
+    assert [outcome.result for outcome in work([1, 2], counting_threads, workers=2)] == [3, 3]
 
 
 def test_what_a_dead_process_did_is_done_by_another(tmp_path):

@@ -226,6 +226,13 @@ def test_few_samples_stand_for_all(monkeypatch, mapped) -> None:
     np.testing.assert_allclose(total["shares"], wanted["shares"], rtol=1e-12)
 
 
+def test_along_creases_all_samples_count(monkeypatch, mapped) -> None:
+    monkeypatch.setattr(few_samples, "_CHEAP", 0)
+    noisy = noisy_torus(mapped)
+    creased = replace(noisy, still=np.zeros(len(noisy.weights), dtype=np.bool_))
+    assert few_samples.few_samples(Gaussian(mapped.orbifold, mapped, size=40), creased) is creased
+
+
 def test_held_samples_all_remain(monkeypatch, mapped) -> None:
     monkeypatch.setattr(few_samples, "_CHEAP", 0)
     noisy = noisy_torus(mapped)
