@@ -13,7 +13,7 @@ from scipy.interpolate import CloughTocher2DInterpolator, NdBSpline
 from orbiframe import Points, Registry, Triangulation
 from orbiframe.delaunay import domain_for
 from orbiframe.functions.lifted_centres import LiftedCentres
-from orbiframe.functions.orbit_sum import reaching_pairs
+from orbiframe.functions.orbit_sum import in_blocks
 from orbiframe.triangulations import GeodesicTriangulation
 
 Floats = NDArray[np.float64]
@@ -121,7 +121,9 @@ def show_pairs(registry: Registry, made: Triangulation, points: Points) -> None:
 
     def search() -> int:
         return sum(
-            len(p.column) for p in reaching_pairs(LiftedCentres(made.orbifold, basis.centres, basis.support), points)
+            in_blocks(
+                LiftedCentres(made.orbifold, basis.centres, basis.support), points, lambda pairs: len(pairs.column)
+            )
         )
 
     pairs, spent = search(), least([search])[0]

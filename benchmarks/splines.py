@@ -29,7 +29,7 @@ from orbiframe import Basis, Points, Registry, Triangulation
 from orbiframe.errors import OrbiframeError
 from orbiframe.files.gate import read
 from orbiframe.functions.lifted_centres import LiftedCentres
-from orbiframe.functions.orbit_sum import reaching_pairs
+from orbiframe.functions.orbit_sum import in_blocks
 from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.meshes.orientation import oriented
 from orbiframe.meshes.subdivision import refine
@@ -93,7 +93,7 @@ def bumps(made: Triangulation, points: Points) -> Floats:
     support = np.full(2, 36 * width if made.orbifold.geometry.curvature < 1 else 2.0)
     values = np.zeros(len(points.patch))
     centres = Points(made.patch[centre], made.points[centre])
-    for pairs in reaching_pairs(LiftedCentres(made.orbifold, centres, support), points):
+    for pairs in in_blocks(LiftedCentres(made.orbifold, centres, support), points, lambda pairs: pairs):
         heights = np.exp(-pairs.versine / width) * (1 + 0.5 * pairs.column)
         values[pairs.rows] = np.add.reduceat(np.append(heights, 0.0), pairs.start[:-1]) * (np.diff(pairs.start) > 0)
     return values

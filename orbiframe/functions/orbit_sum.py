@@ -47,20 +47,16 @@ class Pairs:
     tests: int
 
 
-def reaching_pairs(lifted: LiftedCentres, points: Points, *, slopes: bool = False) -> Iterator[Pairs]:
-    """All pairs of a point and a lift of a centre whose versine is below the support of the centre, in blocks of rows.
-
-    A support of 2 and more reaches every point of S^2. Every block belongs to one patch: the lifts of centres that are
-    seen from there meet a tree of balls over the points, whose test costs no root and no arc function. Points beyond
-    the disc of their patch are seen from a nearer one, see `near_points`.
-    """
-    return in_blocks(lifted, points, lambda pairs: pairs, slopes=slopes)
-
-
 def in_blocks(
     lifted: LiftedCentres, points: Points, task: Callable[[Pairs], Result], *, slopes: bool = False
 ) -> Iterator[Result]:
-    """What a task makes of each block of `reaching_pairs`, in their order, in several threads at a time."""
+    """What a task makes of all pairs of a point and a lift of a centre whose versine is below the centre's support.
+
+    In blocks of rows, in several threads at a time, with the results in the order of the blocks. A support of 2 and
+    more reaches every point of S^2. Every block belongs to one patch: the lifts of centres that are seen from there
+    meet a tree of balls over the points, whose test costs no root and no arc function. Points beyond the disc of their
+    patch are seen from a nearer one, see `near_points`.
+    """
     geometry = lifted.orbifold.geometry
     points, turn = near_points(lifted.orbifold, points)
 

@@ -125,6 +125,10 @@ def _of_csv(path: Path, mesh: Polyhedron) -> FieldData:
 
 def _table(path: Path) -> tuple[list[str], Floats]:
     """The names and the numbers; an empty place is nan."""
+    if not path.exists():
+        raise FormatError(
+            f"{path}: there is no such file; name a CSV file with a line of names, or a mesh with attributes"
+        )
     try:
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:

@@ -9,7 +9,7 @@ from fitted import REGISTRY
 
 from orbiframe.functions import lifted_centres
 from orbiframe.functions.lifted_centres import LiftedCentres
-from orbiframe.functions.orbit_sum import reaching_pairs
+from orbiframe.functions.orbit_sum import in_blocks
 from orbiframe.meshes.surface_type import surface_type
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.triangulations.triangulation import Triangulation
@@ -74,7 +74,7 @@ def test_points_far_beyond_their_patch_see_all_that_reaches_them() -> None:
 
     def columns(points: Points) -> list[list[int]]:
         lists: list[list[int]] = [[] for _ in here]
-        for block in reaching_pairs(lifted, points):
+        for block in in_blocks(lifted, points, lambda pairs: pairs):
             for row, first, last in zip(block.rows, block.start, block.start[1:], strict=False):
                 lists[row] = block.column[first:last].tolist()
         return lists
@@ -88,7 +88,7 @@ def test_the_walk_is_walked_once(monkeypatch) -> None:
     monkeypatch.setattr(lifted_centres, "_leave_images", lambda *args: walks.append(1) or walk(*args))
     lifted = centres_of(made, 30)
     for _ in range(3):
-        list(reaching_pairs(lifted, Points(made.patch, made.points)))
+        list(in_blocks(lifted, Points(made.patch, made.points), lambda pairs: pairs))
     assert len(walks) == 1
 
 

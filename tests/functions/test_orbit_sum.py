@@ -13,7 +13,7 @@ from third_derivatives import error_of_third_derivatives
 
 from orbiframe.errors import FitError
 from orbiframe.functions.lifted_centres import LiftedCentres
-from orbiframe.functions.orbit_sum import Pairs, reaching_pairs
+from orbiframe.functions.orbit_sum import Pairs, in_blocks
 from orbiframe.functions.orbit_sum_basis import OrbitSumBasis
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.orbifolds.orbifold import Orbifold
@@ -75,7 +75,9 @@ def test_pairs_are_those_of_brute_force(seed: int, name: str, narrow: float) -> 
     about = centres.x[rng.integers(12, size=80)]
     near = geometry.exp(about, step[:, None] * geometry.frame(about)[:, :, 0])
     points = Points(np.zeros(140, dtype=int), np.concatenate([spread.x, near]))
-    found = blocks_as_dense(list(reaching_pairs(LiftedCentres(orbifold, centres, support), points)), (140, 12))
+    found = blocks_as_dense(
+        list(in_blocks(LiftedCentres(orbifold, centres, support), points, lambda pairs: pairs)), (140, 12)
+    )
     np.testing.assert_allclose(found, brute_force(orbifold, centres, support, points), atol=1e-9)
 
 
@@ -83,7 +85,8 @@ def test_each_row_lists_its_centres_in_order_and_the_same_twice() -> None:
     orbifold, rng = surfaces.octagon(), np.random.default_rng(3)
     centres, points = (surfaces.random_points(orbifold, n, rng) for n in (30, 500))
     first, again = (
-        list(reaching_pairs(LiftedCentres(orbifold, centres, np.full(30, 1.5)), points, slopes=True)) for _ in range(2)
+        list(in_blocks(LiftedCentres(orbifold, centres, np.full(30, 1.5)), points, lambda pairs: pairs, slopes=True))
+        for _ in range(2)
     )
     for a, b in zip(first, again, strict=True):
         assert all((np.diff(a.column[i:j]) >= 0).all() for i, j in zip(a.start, a.start[1:], strict=False))
@@ -95,7 +98,11 @@ def test_each_row_lists_its_centres_in_order_and_the_same_twice() -> None:
 def test_work_grows_like_the_number_of_pairs(name: str) -> None:
     orbifold, rng = surfaces.ALL[name](), np.random.default_rng(3)
     centres, points = (surfaces.random_points(orbifold, n, rng) for n in (1000, 20000))
-    blocks = list(reaching_pairs(LiftedCentres(orbifold, centres, np.full(1000, 4 * orbifold.area / 1000)), points))
+    blocks = list(
+        in_blocks(
+            LiftedCentres(orbifold, centres, np.full(1000, 4 * orbifold.area / 1000)), points, lambda pairs: pairs
+        )
+    )
     pairs = sum(len(block.column) for block in blocks)
     assert pairs > 15 * 20000
     assert sum(block.tests for block in blocks) < 6 * pairs
@@ -109,7 +116,9 @@ def test_hyperbolic_versines_keep_all_digits(distance: float) -> None:
     y = geometry.exp(x, distance * geometry.frame(x)[:, 1])
     one = Points(np.zeros(1, dtype=int), y[None])
     block = next(
-        reaching_pairs(LiftedCentres(orbifold, one, np.array([50.0])), Points(one.patch, x[None]), slopes=True)
+        in_blocks(
+            LiftedCentres(orbifold, one, np.array([50.0])), Points(one.patch, x[None]), lambda pairs: pairs, slopes=True
+        )
     )
     with mpmath.workdps(50):
         (a1, a2), (b1, b2) = ([mpmath.mpf(v) for v in p[1:]] for p in (x, y))
