@@ -96,9 +96,9 @@ def run(args: argparse.Namespace, registry: Registry) -> None:
         wanted = [(b, n) for n in args.size or SIZES for b in args.basis if (path.name, b, n) not in known]
         mesh = opened(path, registry, args.most) if wanted else None
         for basis, size in wanted if mesh is not None else ():
-            signal.alarm(args.seconds)
+            signal.setitimer(signal.ITIMER_PROF, args.seconds)
             row = {"mesh": path.name, "basis": basis, "size": size} | tried(mesh, basis, size, registry)
-            signal.alarm(0)
+            signal.setitimer(signal.ITIMER_PROF, 0)
             with args.out.open("a", encoding="utf-8") as file:
                 file.write(json.dumps(row) + "\n")
             print(line(row), file=sys.stderr, flush=True)
@@ -157,11 +157,11 @@ def main(argv: Sequence[str] | None = None) -> None:
     parser.add_argument("--basis", action="append", choices=bases, help="default all")
     parser.add_argument("--size", action="append", type=int, help="default 200 and 1000")
     parser.add_argument("--most", type=int, default=6000, help="vertices of a mesh")
-    parser.add_argument("--seconds", type=int, default=120, help="of a fit, by the clock")
+    parser.add_argument("--seconds", type=int, default=120, help="of the processor, for a fit")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "sweep_bases.jsonl", help="the file of results")
     args = parser.parse_args(argv)
     args.basis = args.basis or bases
-    signal.signal(signal.SIGALRM, stop)
+    signal.signal(signal.SIGPROF, stop)
     run(args, registry)
     wanted = (row for row in kept(args.out).values() if row["basis"] in args.basis)
     print("\n".join(tables(wanted)))
