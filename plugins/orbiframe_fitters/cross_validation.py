@@ -15,7 +15,7 @@ Floats = NDArray[np.float64]
 
 _LADDER = 10 ** np.arange(0, 8, 0.5)
 _PROBES = 12
-_GAIN = 0.95
+_GAIN = 0.92
 
 
 class Trial(NamedTuple):
