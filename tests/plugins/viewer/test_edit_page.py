@@ -31,7 +31,7 @@ def edited(tmp_path):
     thread.join(60)
 
 
-def waited(condition, seconds=60.0):
+def waited(condition, seconds=180.0):
     until = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < until

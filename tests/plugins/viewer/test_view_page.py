@@ -240,3 +240,26 @@ def test_a_screenshot_is_a_file_of_both_panes(served, open_browser):
     left, right = np.array_split(pixels, 2, axis=1)
     assert np.ptp(left) > 0.5
     assert np.ptp(right) > 0.5
+
+
+@pytest.mark.parametrize(("milliseconds", "share"), [(100, 0.5), (1, 1)])
+def test_pictures_of_a_movement_have_fewer_pixels_only_where_they_take_long(served, open_browser, milliseconds, share):
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    driver = open_browser()
+    ready(driver, served)
+    wide = "return document.querySelector('#space canvas').width"
+    full = driver.execute_script(wide)
+    # A clock on which each look takes so long, and turns by the keyboard.
+    turns = """const [step, done] = arguments; let now = 0, k = 0; performance.now = () => (now += step);
+        const c = document.querySelector("#space canvas"), widths = [];
+        const turn = () => {
+          widths.push(c.width);
+          if (++k > 8) { done(widths); return; }
+          c.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowLeft" }));
+          requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(turn)));
+        }; turn();"""
+    widths = driver.execute_async_script(turns, milliseconds)
+    assert min(widths) == pytest.approx(share * full, abs=1)
+    assert widths == sorted(widths, reverse=True)
+    WebDriverWait(driver, 10).until(lambda each: each.execute_script(wide) == full)
