@@ -78,7 +78,10 @@ const Panes = (() => {
       if (!w || !h) return;
       this.renderer.setPixelRatio(this.ratio());
       this.renderer.setSize(w, h, false);
-      if (this.camera.isPerspectiveCamera) this.camera.aspect = w / h;
+      if (this.camera.isPerspectiveCamera) {
+        this.camera.aspect = w / h;
+        this.camera.fov = 360 / Math.PI * Math.atan(Math.tan(Math.PI * 16 / 180) / Math.min(w / h, 1)); // 32 for the shorter side
+      }
       else {
         const half = this.half || 1.08, x = w > h ? half * w / h : half, y = w > h ? half : half * h / w;
         Object.assign(this.camera, { left: -x, right: x, top: y, bottom: -y });
