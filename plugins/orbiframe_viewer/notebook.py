@@ -20,7 +20,9 @@ class Shown:
     def __init__(self, surface: OrbifoldSurface, polyhedron: Polyhedron | None = None) -> None:
         self._picture: ShadedPicture = surface.picture()
         self._page = static_page(
-            [surface_scene(surface, polyhedron, f"{len(surface.coefficients)} functions", faces=_FACES)], self._picture.png, "surface"
+            [surface_scene(surface, polyhedron, f"{len(surface.coefficients)} functions", faces=_FACES)],
+            self._picture.png,
+            "surface",
         )
 
     def __repr__(self) -> str:
