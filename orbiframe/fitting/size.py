@@ -32,4 +32,4 @@ def size_needed(basis: Basis, energy: float) -> int:
     domain = getattr(basis, "domain", None)
     if domain is None:
         return round(energy * _SITES_PER_ENERGY)
-    return round(basis.size * energy * _VERTICES_PER_ENERGY / domain.vertex_count)
+    return round(basis.size * energy * _VERTICES_PER_ENERGY / int(domain.vertex_count))
