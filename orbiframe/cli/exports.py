@@ -121,6 +121,11 @@ def _shortcomings(found: dict[str, Any]) -> Iterator[str]:
             "Open CASCADE does not find the shape of the file valid, as where a surface is pinched or passes through "
             "itself on an edge; try another number of --faces"
         )
+    if found.get("divided"):
+        yield (
+            f"colours of the mesh divide {found['divided']} of the {found['faces']} faces of the file; each has that "
+            "of most of its area, and with more --faces less is divided"
+        )
 
 
 def size_of(path: Path) -> str:

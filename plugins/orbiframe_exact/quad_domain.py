@@ -34,7 +34,8 @@ class QuadDomain:
 
     Side k of a quadrilateral runs from its corner k to the next: along s at t = 0, along t at s = 1, and back. edge:
     (Q, 4), the edge at every side; rising: (Q, 4), whether the parameter of the edge grows with s or t there; ends:
-    (E, 2), the vertices where every edge begins and ends; orientable: whether all can be seen from one side.
+    (E, 2), the vertices where every edge begins and ends; orientable: whether all can be seen from one side; triangles:
+    those that are paired, and pair: (F,), the quadrilateral of each.
     """
 
     points: QuadPoints
@@ -42,11 +43,19 @@ class QuadDomain:
     rising: Bools
     ends: Ints
     orientable: bool
+    triangles: GeodesicTriangulation
+    pair: Ints
 
     @property
     def count(self) -> int:
         """Number of quadrilaterals."""
         return len(self.edge)
+
+    @property
+    def meets_itself(self) -> Bools:
+        """Which quadrilaterals have a vertex twice, (Q,)."""
+        first = np.where(self.rising == np.array([True, True, False, False]), 0, 1)
+        return _has_twins(self.ends[self.edge, first])
 
     def sides_of_edges(self) -> Ints:
         """The two sides 4 q + k at every edge, (E, 2)."""
@@ -81,7 +90,7 @@ def _paired(surface: OrbifoldSurface, sites: GeodesicTriangulation) -> QuadDomai
     inner = np.flatnonzero(sites.reference & (halfedge // 3 != sites.twin // 3))
     corners, sides, back = _quads(sites, inner)
     corner = np.where(back, end[sides], start[sides])
-    twice = (np.diff(np.sort(corner, axis=1), axis=1) == 0).any(axis=1)
+    twice = _has_twins(corner)
     points = QuadPoints(surface, corners, sites.patch[inner // 3], sites.placement[inner // 3])
     worth = _PAIR + _quality(points) + np.where(twice, _MEETS_ITSELF, 0.0)
     chosen = _matching(np.stack([inner, sites.twin[inner]]) // 3, worth, sites.face_count)
@@ -90,8 +99,10 @@ def _paired(surface: OrbifoldSurface, sites: GeodesicTriangulation) -> QuadDomai
     sides, back = sides[chosen], back[chosen]
     reference = np.minimum(sides, sites.twin[sides])
     edges, edge = np.unique(reference, return_inverse=True)
-    if (np.diff(np.sort(edge.reshape(sides.shape), axis=1), axis=1) == 0).any():
+    if _has_twins(edge.reshape(sides.shape)).any():
         return None
+    pair = np.empty(sites.face_count, dtype=np.intp)
+    pair[inner[chosen] // 3] = pair[sites.twin[inner[chosen]] // 3] = np.arange(len(chosen))
     along = ((sides == reference) | sites.same[sides]) ^ back
     weighted = corners[chosen] * _weights(surface, sites)[corner[chosen]][..., None]
     return QuadDomain(
@@ -100,6 +111,8 @@ def _paired(surface: OrbifoldSurface, sites: GeodesicTriangulation) -> QuadDomai
         along ^ np.array([False, False, True, True]),
         np.stack([start[edges], end[edges]], axis=1),
         surface.orbifold.orientable,
+        sites,
+        pair,
     )
 
 
@@ -149,6 +162,11 @@ def _weights(surface: OrbifoldSurface, sites: GeodesicTriangulation) -> Floats:
     basis = surface.basis
     d = basis.jets(Points(points.patch, points.x), surface.coefficients, 1)  # type: ignore[attr-defined]
     return np.asarray(np.linalg.norm(np.cross(d[1], d[2]), axis=1) ** 0.25)
+
+
+def _has_twins(rows: Ints) -> Bools:
+    """Whether some number of a row is there twice, (n,)."""
+    return np.asarray((np.diff(np.sort(rows, axis=1), axis=1) == 0).any(axis=1))
 
 
 def _following(halfedge: Ints) -> Ints:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from fitted import fitted as fit_of
 from late import Late
-from orbiframe_exact import few_faces
+from orbiframe_exact import few_faces, quad_domain as quad_domain_module
 from orbiframe_exact.complete_spline import evaluate, evaluate_grid
 from orbiframe_exact.faces_of_surface import described, fitted
 from orbiframe_exact.few_faces import FewFaces
@@ -147,6 +147,26 @@ def test_open_cascade_reads_a_closed_shape_of_the_same_volume(name, suffix, tmp_
         assert met.faces == [2] * (2 * said["faces"])
         assert met.gap < 1e-6
         assert met.angle < 0.11
+
+
+@pytest.mark.long
+def test_a_face_that_meets_a_vertex_twice_is_read_whole(tmp_path):
+    """Three crosscaps have faces that no reader finds in the square by their edges in space alone."""
+    surface, path = fit_of("three_crosscaps.off").surface, tmp_path / "surface.step"
+    assert quad_domain(surface, default_count(surface)).meets_itself.any()
+    said = open_cascade.write_step(path, surface, exact=False)
+    assert said["valid"]
+    met = shared_edges.meeting(opened.read_back(path), 7)
+    assert met.faces == [2] * (2 * said["faces"])
+    assert met.gap < 1e-6
+
+
+@pytest.mark.long
+def test_valid_is_what_the_file_is(tmp_path, monkeypatch):
+    """Without the lines in the squares of its faces the same shape is not what is read again, and that is told."""
+    monkeypatch.setattr(quad_domain_module.QuadDomain, "meets_itself", np.zeros(1, dtype=bool))
+    surface = fit_of("three_crosscaps.off").surface
+    assert not open_cascade.write_step(tmp_path / "surface.step", surface, exact=False)["valid"]
 
 
 def test_a_tolerance_and_a_number_are_kept():
