@@ -93,7 +93,7 @@ def export(path: Path, result: Result, options: dict[str, object], registry: Reg
 
     progress("export", None)
     start = time.perf_counter()
-    found = gate.export(path, result.surface, registry, options=options)
+    found = gate.export(path, result.surface, registry, options=options | _quads(path, result, options, registry))
     result.report["seconds"]["export"] = round(time.perf_counter() - start, 4)
     progress("export", result.report["seconds"]["export"])
     if "faces" not in options:
@@ -106,6 +106,14 @@ def export(path: Path, result: Result, options: dict[str, object], registry: Reg
         f"{found['faces']} B-spline faces, at most {found['error']:.1e} of the diagonal from the surface, tangent "
         f"planes within {found['angle']:.2f}°, {size_of(path)}"
     )
+
+
+def _quads(path: Path, result: Result, options: dict[str, object], registry: Registry) -> dict[str, object]:
+    """The faces of the input for an exporter that makes blocks of them, if all have four corners."""
+    asked = "faces" in options and "quads" in (_exporter_options(path, registry) or ())
+    if not asked or (result.input.face_sizes != 4).any():
+        return {}
+    return {"quads": result.input.tail.reshape(-1, 4).tolist()}
 
 
 def _shortcomings(found: dict[str, Any]) -> Iterator[str]:

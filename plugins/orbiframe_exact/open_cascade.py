@@ -31,7 +31,7 @@ from orbiframe import FitError, Notice, OrbifoldSurface, __version__
 from orbiframe.surfaces import PeriodicPatch, patches_of
 from orbiframe_exact.coloured_document import document_of
 from orbiframe_exact.face_colours import face_colours
-from orbiframe_exact.faces_of_surface import described, fitted
+from orbiframe_exact.faces_of_surface import Quads, described, fitted
 from orbiframe_exact.shapes import shape_of
 from orbiframe_exact.spline_shapes import spline_shape
 from orbiframe_exact.step_text import shorter
@@ -57,6 +57,7 @@ def write_step(
     tolerance: float = 1e-4,
     unit: str = "mm",
     name: str = _NAME,
+    quads: Quads = (),
 ) -> dict[str, Any]:
     """The surface in a STEP file (AP214): a solid where it has an inside, else a shell.
 
@@ -65,10 +66,11 @@ def write_step(
     topology suggests; tolerance, their largest distance from the surface as a share of the diagonal of its box. Returns
     what they are in numbers, with `valid`, what Open CASCADE finds when it reads the file.
     unit: mm, cm, m or in; a surface in another one is converted, with a notice, and one of no unit has its numbers in
-    this one. name: of the product; letters, digits and ._- are kept. Raises FitError for a surface without exact
+    this one. name: of the product; letters, digits and ._- are kept. quads: the faces of the input, if all have four
+    corners; blocks of them become faces where that serves. Raises FitError for a surface without exact
     patches, or derivatives, for another unit, or where Open CASCADE fails.
     """
-    made = _made(_in_unit(path, surface, unit), exact, faces, tolerance)
+    made = _made(_in_unit(path, surface, unit), exact, faces, tolerance, quads)
     _silence()
     writer = STEPCAFControl_Writer()
     writer.SetColorMode(True)
@@ -96,14 +98,15 @@ def write_iges(
     tolerance: float = 1e-4,
     unit: str = "mm",
     name: str = _NAME,
+    quads: Quads = (),
 ) -> dict[str, Any]:
     """The surface in an IGES file (5.3).
 
-    The options exact, faces, tolerance, unit and name are those of `write_step`.
+    The options exact, faces, tolerance, unit, name and quads are those of `write_step`.
     """
     placed = _in_unit(path, surface, unit)
     # The writer takes shapes for millimetres and converts them.
-    made = _made(_scaled(placed, _UNITS[unit][1]), exact, faces, tolerance)
+    made = _made(_scaled(placed, _UNITS[unit][1]), exact, faces, tolerance, quads)
     _silence()
     IGESControl_Controller.Init_s()
     Interface_Static.SetIVal_s("write.iges.brep.mode", _AS_TOPOLOGY)
@@ -130,13 +133,13 @@ class _Made(NamedTuple):
     seamed: bool
 
 
-def _made(surface: OrbifoldSurface, exact: bool, faces: int, tolerance: float) -> _Made:
+def _made(surface: OrbifoldSurface, exact: bool, faces: int, tolerance: float, quads: Quads) -> _Made:
     if exact:
         patches = patches_of(surface)
         return _Made(shape_of(patches), None, {}, isinstance(patches, PeriodicPatch))
     if surface.triangulation.crease is not None:
         raise FitError("a few faces would round the creases of the surface off; write its exact patches (exact=True)")
-    few = fitted(surface, faces or None, tolerance)
+    few = fitted(surface, faces or None, tolerance, quads)
     numbers, found = described(few, surface, tolerance), face_colours(surface, few.domain)
     if found is not None:
         numbers["divided"] = found.divided
