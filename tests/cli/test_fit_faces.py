@@ -73,6 +73,16 @@ def volume_of(path):
     return abs(volume(read_back(path)))
 
 
+@pytest.mark.parametrize("name", ["plate.step", "plate.xml"])
+def test_blocks_of_quads_become_faces(orbiframe, tmp_path, name):
+    """The 50 unit squares of the plate, where 32 faces are the default; with 100 asked for there are no blocks."""
+    for asked, faces in (((), 50), (("--faces", 100), 100)):
+        options = ("--size", 60, "--fast", "--export-tolerance", 1e-2, *asked, "--json")
+        ran = orbiframe("fit", DATASETS / "plate_genus2.off", "-o", tmp_path / name, *options)
+        assert ran.status == 0
+        assert json.loads(ran.out)["export"]["faces"] == faces
+
+
 def test_colours_that_divide_faces_are_told(orbiframe, tmp_path):
     mesh = read(CUBE)
     paint = np.eye(3)[np.arange(mesh.face_count) % 3]
