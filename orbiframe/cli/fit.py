@@ -9,7 +9,6 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from orbiframe.cli.boundary import add_boundary
 from orbiframe.cli.exports import export, export_options, require_known, size_of
 from orbiframe.cli.report import json_text, summary, warnings_of, write_report
 from orbiframe.cli.speech import say
@@ -19,6 +18,7 @@ from orbiframe.files.destination import require_destination, require_textures
 from orbiframe.files.folder import require_folder
 from orbiframe.files.outputs import require_apart, require_output
 from orbiframe.files.repair_options import add_repairs, repaired, repairs_asked
+from orbiframe.fitting.boundary_option import add_boundary
 
 if TYPE_CHECKING:
     from orbiframe.fitting.config import Config

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from orbiframe import FormatError, Registry, UsageError
-from orbiframe.cli import add_boundary
 from orbiframe.files import require_apart
+from orbiframe.fitting import add_boundary
 from orbiframe.plugin import DEFAULT_MARKER
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from orbiframe import Registry
-from orbiframe.cli import add_boundary
 from orbiframe.files import require_apart
+from orbiframe.fitting import add_boundary
 
 if TYPE_CHECKING:
     from orbiframe_fields.vertex_curvature import VertexCurvature

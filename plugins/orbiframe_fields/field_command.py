@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from orbiframe import Registry, UsageError
-from orbiframe.cli import add_boundary
 from orbiframe.files import require_apart
+from orbiframe.fitting import add_boundary
 
 if TYPE_CHECKING:
     from orbiframe_fields.mesh_field import MeshField

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import OrbifoldSurface, Points, Polyhedron, Registry, UsageError, load_surface, read
-from orbiframe.cli import add_boundary
+from orbiframe.fitting import add_boundary
 from orbiframe_fields.fitted_surfaces import fitted_surfaces
 from orbiframe_fields.mesh_field import SURFACE, side_by_side, tessellated, vertices_of
 
