@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -19,6 +21,7 @@ Ints = NDArray[np.intp]
 
 _DIGITS = 1e-5
 _PATIENCE = 25
+_KEPT = 4  # orders of the meshes before
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,11 +36,9 @@ class Elimination:
 
     @classmethod
     def of(cls, mesh: Polyhedron) -> Elimination:
-        """A good order for the edges of a mesh; found once for each mesh."""
+        """A good order for the edges of a mesh; found once for all meshes with the same faces."""
         if mesh not in _FOUND:
-            once = mesh.representative
-            order = elimination_order(len(mesh.vertices), mesh.tail[once], mesh.head[once])
-            _FOUND[mesh] = cls(order, np.argsort(order))
+            _FOUND[mesh] = _of_faces(_Faces(mesh))
         return _FOUND[mesh]
 
     def matrix(self, tail: Ints, head: Ints, entries: NDArray[Any], diagonal: NDArray[Any]) -> csc_array[Any]:
@@ -57,6 +58,29 @@ class Elimination:
 
 
 _FOUND: WeakKeyDictionary[Polyhedron, Elimination] = WeakKeyDictionary()
+
+
+class _Faces:
+    """The faces of a mesh, which are equal where their corners are, wherever those lie in space."""
+
+    def __init__(self, mesh: Polyhedron) -> None:
+        self.mesh = mesh
+        numbers = (np.ascontiguousarray(array) for array in (mesh.offsets, mesh.tail))
+        self._sum = len(mesh.vertices), *(hashlib.sha256(array).digest() for array in numbers)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Faces) and self._sum == other._sum
+
+    def __hash__(self) -> int:
+        return hash(self._sum)
+
+
+@lru_cache(_KEPT)
+def _of_faces(faces: _Faces) -> Elimination:
+    mesh = faces.mesh
+    once = mesh.representative
+    order = elimination_order(len(mesh.vertices), mesh.tail[once], mesh.head[once])
+    return Elimination(order, np.argsort(order))
 
 
 def elimination_order(count: int, tail: Ints, head: Ints) -> Ints:
