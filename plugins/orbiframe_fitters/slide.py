@@ -11,10 +11,10 @@ from scipy.sparse import csr_array
 
 from orbiframe import DifferentiableBasis, Points, Samples
 from orbiframe.functions import foot_points, foot_step, moved
+from orbiframe_fitters.chunks import chunks
 from orbiframe_fitters.energy import Energy, energy_of, spacing
 from orbiframe_fitters.gram import Gram
 from orbiframe_fitters.kinks import Kinks
-from orbiframe_fitters.least_squares import chunks
 from orbiframe_fitters.normal_equations import nearly_solved, solved
 from orbiframe_fitters.sliding_data import PAIRS, Feet, Schedule, away_from, linearised, products
 
@@ -48,11 +48,20 @@ class _Fairness(NamedTuple):
 
 
 class Slide:
-    """The data of a sliding fit, chunk by chunk, and its steps."""
+    """The data of a sliding fit, chunk by chunk, and its steps.
 
-    def __init__(self, basis: DifferentiableBasis, samples: Samples, schedules: tuple[Schedule, ...]) -> None:
-        self.basis, self.samples, self.schedules = basis, samples, schedules
-        self.energy = energy_of(basis, samples) if any(schedule.fairing for schedule in schedules) else None
+    fair: the samples over which fairness is summed up, by default those of the data.
+    """
+
+    def __init__(
+        self,
+        basis: DifferentiableBasis,
+        samples: Samples,
+        schedules: tuple[Schedule, ...],
+        fair: Samples | None = None,
+    ) -> None:
+        self.basis, self.fair, self.schedules = basis, samples if fair is None else fair, schedules
+        self.energy = energy_of(basis, self.fair) if any(schedule.fairing for schedule in schedules) else None
         self.data = [
             part.take(np.flatnonzero(part.weights > 0)) for part, _ in chunks(samples) if (part.weights > 0).any()
         ]
@@ -68,7 +77,7 @@ class Slide:
 
     def _fairness(self, energy: Energy) -> list[_Fairness]:
         found = []
-        for part, chosen in chunks(self.samples):
+        for part, chosen in chunks(self.fair):
             jets = self.basis.jet_matrices(part.points, energy.order)
             found.append(_Fairness(chosen, energy.rows(jets), jets[1:3]))
         return found
@@ -211,7 +220,7 @@ class Slide:
         gram = Gram(self.basis.size, most=self._room)
         for part in self.fairness:
             chosen, rows, _ = part
-            stretch = np.minimum(1 / _elements(part, coefficients), _MOST_STRETCH * self.samples.stretch[chosen])
+            stretch = np.minimum(1 / _elements(part, coefficients), _MOST_STRETCH * self.fair.stretch[chosen])
             for row in rows:
                 gram.add(row, energy.weights(chosen, stretch))
         return gram.matrices()[0]
