@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from orbiframe import DifferentiableBasis, Points, Samples
-from orbiframe.functions import foot_points, foot_step, moved
+from orbiframe.functions import feet_of, foot_step, moved
 from orbiframe_fitters.chunks import chunks
 from orbiframe_fitters.energy import Energy, energy_of, spacing
 from orbiframe_fitters.gram import Gram
@@ -109,8 +109,7 @@ class Slide:
         gram, right = self._empty()
         longest = _LONGEST_STEP * self.spacing
         for part, _ in chunks(samples.take(np.flatnonzero(samples.weights > 0))):
-            points, _ = foot_points(self.basis, coefficients, part.points, part.values, longest, _ALL_STEPS)
-            jets = self.basis.jets(points, coefficients, 2)
+            points, _, jets = feet_of(self.basis, coefficients, part.points, part.values, longest, _ALL_STEPS)
             feet = Feet(points, self.basis.jet_matrices(points, 0), jets, part.values - jets[0])
             self._enter(gram, right, feet, part, schedule)
         trial = coefficients + self._solved(gram, right, coefficients, schedule)
