@@ -109,7 +109,6 @@ def feet_of(
 ) -> FootPoints:
     """The same with jets; jets: (6, n, 3), those at the starting points where they are known already."""
     begin = Points(np.array(points.patch), np.array(points.x))
-    jets = basis.jets(points, coefficients, 2) if jets is None else jets.copy()
     found = _Search(basis, coefficients, begin, np.asarray(targets), longest, jets)
     found.descend(np.arange(len(targets)), steps)
     far = np.flatnonzero(found.distance > _FAR * longest)
@@ -127,11 +126,12 @@ class _Search:
         points: Points,
         targets: Floats,
         longest: float,
-        jets: Floats,
+        jets: Floats | None = None,
     ) -> None:
         self.basis, self.coefficients, self.targets, self.longest = basis, coefficients, targets, longest
-        self.points, self.jets = points, jets
-        self.distance = np.linalg.norm(targets - jets[0], axis=1)
+        self.points = points
+        self.jets = basis.jets(points, coefficients, 2) if jets is None else jets.copy()
+        self.distance = np.linalg.norm(targets - self.jets[0], axis=1)
 
     def descend(self, active: Ints, steps: int) -> None:
         """Newton's method for some of the points, until they come no nearer."""
