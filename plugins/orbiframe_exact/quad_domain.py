@@ -34,8 +34,7 @@ class QuadDomain:
 
     Side k of a quadrilateral runs from its corner k to the next: along s at t = 0, along t at s = 1, and back. edge:
     (Q, 4), the edge at every side; rising: (Q, 4), whether the parameter of the edge grows with s or t there; ends:
-    (E, 2), the vertices where every edge begins and ends; orientable: whether all can be seen from one side; triangles:
-    those that are paired, and pair: (F,), the quadrilateral of each.
+    (E, 2), the vertices where every edge begins and ends; orientable: whether all can be seen from one side.
     """
 
     points: QuadPoints
@@ -43,8 +42,6 @@ class QuadDomain:
     rising: Bools
     ends: Ints
     orientable: bool
-    triangles: GeodesicTriangulation
-    pair: Ints
 
     @property
     def count(self) -> int:
@@ -95,8 +92,6 @@ def _paired(surface: OrbifoldSurface, sites: GeodesicTriangulation) -> QuadDomai
     edges, edge = np.unique(reference, return_inverse=True)
     if (np.diff(np.sort(edge.reshape(sides.shape), axis=1), axis=1) == 0).any():
         return None
-    pair = np.empty(sites.face_count, dtype=np.intp)
-    pair[inner[chosen] // 3] = pair[sites.twin[inner[chosen]] // 3] = np.arange(len(chosen))
     along = ((sides == reference) | sites.same[sides]) ^ back
     weighted = corners[chosen] * _weights(surface, sites)[corner[chosen]][..., None]
     return QuadDomain(
@@ -105,8 +100,6 @@ def _paired(surface: OrbifoldSurface, sites: GeodesicTriangulation) -> QuadDomai
         along ^ np.array([False, False, True, True]),
         np.stack([start[edges], end[edges]], axis=1),
         surface.orbifold.orientable,
-        sites,
-        pair,
     )
 
 
