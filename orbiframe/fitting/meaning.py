@@ -28,7 +28,7 @@ _SMOOTH, _SHARP = 0.20, 0.45
 # Beside creases nothing bends if no more than this share does.
 _FLAT = 1e-6
 # Facets no longer than this share of the distance of functions leave no mark in a fit.
-_SEEN = 0.25
+_SEEN = 0.3
 # So many samples of facets are enough; a mesh of needles would have many more than functions can tell apart.
 _LEAST_SAMPLES, _SAMPLES_PER_FUNCTION = 250_000, 100
 

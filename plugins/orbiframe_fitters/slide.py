@@ -12,16 +12,16 @@ from scipy.sparse import csr_array
 from orbiframe import DifferentiableBasis, Points, Samples
 from orbiframe.functions import feet_of, foot_step, moved
 from orbiframe_fitters.chunks import chunks
+from orbiframe_fitters.coupled import KIND, coupled, nearly_solved
 from orbiframe_fitters.energy import Energy, energy_of, spacing
 from orbiframe_fitters.gram import Gram
 from orbiframe_fitters.kinks import Kinks
-from orbiframe_fitters.normal_equations import nearly_solved, solved
+from orbiframe_fitters.normal_equations import solved
 from orbiframe_fitters.sliding_data import PAIRS, Feet, Schedule, away_from, linearised, products
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-_KIND = np.array([[0, 1, 2], [1, 3, 4], [2, 4, 5]])
 # A foot moves at most so many lengths of fairness in one step, and the surface is stretched at most so much in fairing.
 _LONGEST_STEP = 0.3
 _MOST_STRETCH = 30.0
@@ -184,14 +184,14 @@ class Slide:
             weights, wanted = self._smoothed(self.kinks, coefficients)
             gram.add(self.kinks.jump, weights)
             right += self.kinks.jump.T @ wanted
-        blocks: list[Any] = list(gram.matrices())
+        stiff: Any = csr_array((self.basis.size, self.basis.size))
         if self.energy is not None and schedule.fairing:
-            stiff: Any = schedule.fairing * self._stiffness(coefficients, self.energy)
+            stiff = schedule.fairing * self._stiffness(coefficients, self.energy)
             right -= stiff @ coefficients
-            blocks = [block + stiff if kind in (0, 3, 5) else block for kind, block in enumerate(blocks)]
-        rows = [[blocks[kind] for kind in line] for line in _KIND]
         if self.basis.size > _DIRECT and not self.creased:
-            return nearly_solved(rows, right)
+            return nearly_solved(coupled(gram, stiff), right)
+        blocks = [block + stiff if kind in (0, 3, 5) else block for kind, block in enumerate(gram.matrices())]
+        rows = [[blocks[kind] for kind in line] for line in KIND]
         return solved(_joined(rows), right.T.reshape(-1, 1)).reshape(3, -1).T
 
     @property
