@@ -15,6 +15,7 @@ from scipy.sparse import coo_array, csc_array, csr_array, diags_array
 from scipy.sparse.linalg import LinearOperator, SuperLU, cg, splu
 
 from orbiframe import MapError, Polyhedron
+from orbiframe.workers import chosen_solver
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -48,7 +49,9 @@ class Elimination:
         data = np.concatenate([entries, np.conj(entries), diagonal])
         return coo_array((data, (rows, columns)), shape=(len(self.order),) * 2).tocsc()
 
-    def solver(self, tail: Ints, head: Ints, entries: Floats, diagonal: Floats) -> Callable[[Floats], Floats]:
+    def solver(
+        self, tail: Ints, head: Ints, entries: NDArray[Any], diagonal: NDArray[Any]
+    ) -> Callable[[NDArray[Any]], NDArray[Any]]:
         """The solution of systems with that matrix for right sides (V,) or (V, k); numbered like the mesh.
 
         Raises MapError for a singular matrix.
@@ -129,6 +132,19 @@ def minimum_degree_order(graph: csr_array[Any]) -> Ints:
     return order
 
 
+def solver_on(
+    mesh: Polyhedron, edges: tuple[Ints, Ints], entries: NDArray[Any], diagonal: NDArray[Any]
+) -> Callable[[NDArray[Any]], NDArray[Any]]:
+    """The solution of systems with a Hermitian matrix, see `Elimination.matrix`, by the solver that is chosen.
+
+    edges: tails and heads among those of the mesh. Raises MapError for a singular matrix.
+    """
+    chosen = chosen_solver()
+    if chosen is None:
+        return Elimination.of(mesh).solver(*edges, entries, diagonal)
+    return chosen(csc_array(_hermitian(*edges, entries, diagonal)))
+
+
 class Successive:
     """Solutions of symmetric positive definite systems on one set of vertices, each matrix near the one before.
 
@@ -148,11 +164,11 @@ class Successive:
         MapError for a singular matrix.
         """
         if self._near is not None:
-            matrix = _symmetric(*edges, entries, diagonal)
+            matrix = _hermitian(*edges, entries, diagonal)
             answer, found = by_conjugate_gradients(matrix, right, self._near, tolerance=_DIGITS, steps=_PATIENCE)
             if found:
                 return answer
-        self._near = Elimination.of(mesh).solver(*edges, entries, diagonal)
+        self._near = solver_on(mesh, edges, entries, diagonal)
         return self._near(right)
 
 
@@ -168,10 +184,10 @@ def by_conjugate_gradients(
     return np.asarray(answer), failure == 0
 
 
-def _symmetric(tail: Ints, head: Ints, entries: Floats, diagonal: Floats) -> csr_array[Any]:
+def _hermitian(tail: Ints, head: Ints, entries: NDArray[Any], diagonal: NDArray[Any]) -> csr_array[Any]:
     every = np.arange(len(diagonal))
     place = np.concatenate([tail, head, every]), np.concatenate([head, tail, every])
-    return coo_array((np.concatenate([entries, entries, diagonal]), place), shape=(len(every),) * 2).tocsr()
+    return coo_array((np.concatenate([entries, np.conj(entries), diagonal]), place), shape=(len(every),) * 2).tocsr()
 
 
 def factorised(matrix: csc_array[Any]) -> SuperLU:
