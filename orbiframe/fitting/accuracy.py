@@ -21,14 +21,11 @@ from orbiframe.surfaces.border import Border, border_of
 from orbiframe.surfaces.surface import OrbifoldSurface
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
 
 # A surface that leaves the ball about the mesh by more than its radius is no approximation.
 _TOO_FAR = 1.0
 # Feet farther than this share of the spacing of functions, and this share of all that are worst, are found exactly.
 _NEAR, _WORST = 0.1, 0.01
-# So many centroids are looked at for each function, where there are twice as many and as many vertices.
-_CENTROIDS = 24
 # So many places are told where the error is largest, so far apart, in diagonals.
 PLACES, APART = 6, 0.08
 
@@ -91,9 +88,7 @@ def accuracy_of(surface: OrbifoldSurface) -> Accuracy:
     inside = surface.triangulation.inside
     # Of a mesh with a boundary only what belongs to it is seen: first its vertices, then its centroids.
     own = np.arange(len(everywhere.weights)) if inside is None else np.flatnonzero(everywhere.weights > 0)
-    own, factor = _thinned(own, int(np.searchsorted(own, len(flat.vertices))), surface.basis.size)
     samples, count = everywhere.take(own), int(np.searchsorted(own, len(flat.vertices)))
-    samples = replace(samples, weights=samples.weights * factor)
     given = int(np.searchsorted(own, given))
     there, away, normals = _seen(surface, samples, given)
     _require_sane(there, samples.values, samples.weights)
@@ -109,20 +104,6 @@ def accuracy_of(surface: OrbifoldSurface) -> Accuracy:
         at_vertices,
         None if inside is None else border_of(surface),
     )
-
-
-def _thinned(own: Ints, vertices: int, size: int) -> tuple[Ints, Floats]:
-    """Samples of which so many are vertices and the others centroids, with fewer centroids where functions have many.
-
-    And how much each of them counts, (n,). The vertices all remain.
-    """
-    centroids = own[vertices:]
-    most = _CENTROIDS * size
-    if min(len(centroids) // 2, vertices) < most:
-        return own, np.ones(len(own))
-    kept = centroids[np.arange(most) * len(centroids) // most]
-    factor = np.repeat([1.0, len(centroids) / most], [vertices, most])
-    return np.concatenate([own[:vertices], kept]), factor
 
 
 def _seen(surface: OrbifoldSurface, samples: Samples, given: int) -> tuple[Floats, Floats, Floats]:
