@@ -105,7 +105,8 @@ class Config:
     "mesh" takes the group from the mesh; marking: cuts the mesh open for a named group; map: "auto" takes the
     parametrizer that fits the geometry and the group; shape: changes the map so that faces become regular, "none"
     leaves it as it is; solver: what solves the equations of
-    maps, "auto" what the parametrizer does; basis; fitter. boundary: how a mesh with a boundary is closed for the map, "error" if it is not.
+    maps, "auto" what the parametrizer does; basis; fitter. boundary: how a mesh with a boundary is closed for the map,
+    "error" if it is not.
     like: a saved surface whose map is taken over. places: where each "table.key" was written, for error messages.
     NAMES: of all tables.
 

@@ -39,7 +39,8 @@ SELECTOR_MEANINGS = {
     "map": "name of a parametrizer; auto takes sphere for χ > 0 and harmonic for χ ≤ 0, or equivariant if the "
     "group has a name",
     "shape": "name of an optimizer, such as regular-faces; none: the map stays as it is",
-    "solver": "name of a solver; auto: METIS orders the edges of a mesh once for all its equations, SuperLU factors them",
+    "solver": "name of a solver; auto: METIS orders the edges of a mesh once for all its equations, SuperLU factors "
+    "them",
     "basis": "name of a basis",
     "fitter": "name of a fitter: sliding, least-squares for the linear fit that sliding begins with, or "
     "smoothing, whose fairing cross-validation finds",

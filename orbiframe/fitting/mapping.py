@@ -199,7 +199,9 @@ class Mapping:
             lambda: self._key("map", name, parametrizer, mesh_key(mesh)),
             mesh,
             geometry,
-            lambda: made(registry, "parametrizer", name, self._solved(parametrizer, mesh, geometry, group), Triangulation),
+            lambda: made(
+                registry, "parametrizer", name, self._solved(parametrizer, mesh, geometry, group), Triangulation
+            ),
         )
         remedy = "map.method = 'auto'" + ("" if group is None else " or group.method = 'mesh'")
         _require_embedding(triangulation, f"the map of '{name}'", remedy)

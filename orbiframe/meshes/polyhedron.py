@@ -174,7 +174,7 @@ class Polyhedron:
 
     @cached_property
     def sheets(self) -> tuple[int, int, Ints]:
-        """Components of the faces, and of the two-sheeted orientation cover, with the labels (2F,) of faces f, F + f."""
+        """Components of the faces, and of their two-sheeted orientation cover, with its labels (2F,) of f and F + f."""
         from orbiframe.meshes.orientation import face_sheets
 
         return face_sheets(self)

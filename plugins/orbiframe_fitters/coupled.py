@@ -98,8 +98,8 @@ def coupled(gram: Gram, stiff: Any) -> Coupled:
     """The matrix of six kinds of sums, with a symmetric one added for each coordinate."""
     if gram.upper is not None:
         return PackedBlocks.of(gram.upper, stiff if isinstance(stiff, np.ndarray) else stiff.toarray())
-    sums = gram.matrices()
-    return SparseBlocks([csr_array(block + stiff) if kind in (0, 3, 5) else block for kind, block in enumerate(sums)])
+    sums: list[Any] = list(gram.matrices())
+    return SparseBlocks([csr_array(block + stiff if kind in (0, 3, 5) else block) for kind, block in enumerate(sums)])
 
 
 def nearly_solved(matrix: Coupled, right: Floats) -> Floats:

@@ -73,6 +73,7 @@ def _undetermined(size: int) -> FitError:
 
 
 def require_seen(diagonal: Floats) -> None:
+    """Raises FitError for a function that no sample sees, by the diagonal of the equations."""
     unseen = np.flatnonzero(~(diagonal > 0) | ~np.isfinite(diagonal))
     if len(unseen):
         raise FitError(

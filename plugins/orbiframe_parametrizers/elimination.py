@@ -69,7 +69,7 @@ class _Faces:
     def __init__(self, mesh: Polyhedron) -> None:
         self.mesh = mesh
         numbers = (np.ascontiguousarray(array) for array in (mesh.offsets, mesh.tail))
-        self._sum = len(mesh.vertices), *(hashlib.sha256(array).digest() for array in numbers)
+        self._sum = len(mesh.vertices), *(hashlib.sha256(array.data).digest() for array in numbers)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, _Faces) and self._sum == other._sum

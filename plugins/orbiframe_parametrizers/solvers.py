@@ -53,7 +53,7 @@ def pardiso(matrix: csc_array[Any]) -> Solution:
         _require_diagonal(upper)
         solver.factorize(upper)
     except (PyPardisoError, ValueError) as error:
-        raise MapError(f"the equations of the map are singular for Pardiso ({error}); take solver.name = 'auto'") from error
+        raise MapError(f"singular equations of the map, Pardiso says: {error}; take solver.name = 'auto'") from error
 
     def solution(right: Numbers) -> Numbers:
         if not complex_:
