@@ -102,19 +102,19 @@ def _principal_axes(xx, yy, zz, xy, xz, yz, frame):  # type: ignore[no-untyped-d
     set_identity(frame)
     for _ in range(_ROTATIONS):
         if abs(xy) >= abs(xz) and abs(xy) >= abs(yz):
-            if abs(xy) <= _NOTHING * (xx + yy):
+            if abs(xy) <= _NOTHING * abs(xx + yy):
                 return
             c, s, t = _rotation(xx, yy, xy)
             xx, yy, xy, xz, yz = xx - t * xy, yy + t * xy, 0.0, c * xz - s * yz, s * xz + c * yz
             _rotate(frame, 0, 1, c, s)
         elif abs(xz) >= abs(yz):
-            if abs(xz) <= _NOTHING * (xx + zz):
+            if abs(xz) <= _NOTHING * abs(xx + zz):
                 return
             c, s, t = _rotation(xx, zz, xz)
             xx, zz, xz, xy, yz = xx - t * xz, zz + t * xz, 0.0, c * xy - s * yz, s * xy + c * yz
             _rotate(frame, 0, 2, c, s)
         else:
-            if abs(yz) <= _NOTHING * (yy + zz):
+            if abs(yz) <= _NOTHING * abs(yy + zz):
                 return
             c, s, t = _rotation(yy, zz, yz)
             yy, zz, yz, xy, xz = yy - t * yz, zz + t * yz, 0.0, c * xy - s * xz, s * xy + c * xz
