@@ -48,6 +48,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=Path,
         help="the map of a saved surface, for its mesh moved or cut finer (map.like)",
     )
+    add("--solver", metavar="NAME", help="what solves the equations of the map, such as pardiso (solver.name)")
     add("--basis", metavar="NAME", help="the functions, such as ps6 or gaussian (basis.name)")
     add("--data", metavar="MEANS", help="what the mesh means: smooth, semi-smooth or facets; default auto (data.means)")
     add(
@@ -207,6 +208,7 @@ def overrides(args: argparse.Namespace) -> list[str]:
         "group.method": args.group,
         "map.method": args.map,
         "map.like": None if args.like is None else json.dumps(str(args.like)),
+        "solver.name": args.solver,
         "basis.name": args.basis,
         "shape.method": args.shape,
         "basis.size": args.size,

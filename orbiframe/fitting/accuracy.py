@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from orbiframe.errors import FitError
 from orbiframe.functions.basis import DifferentiableBasis
-from orbiframe.functions.feet import foot_points, foot_step
+from orbiframe.functions.feet import feet_of, foot_step
 from orbiframe.functions.samples import Samples, places
 from orbiframe.meshes.edge_paths import first_largest
 from orbiframe.meshes.nearest_points import NearestPoints
@@ -130,7 +130,7 @@ def _seen(surface: OrbifoldSurface, samples: Samples, given: int) -> tuple[Float
     far = (np.linalg.norm(way, axis=1) > _NEAR * spacing) | (away >= np.quantile(away, 1 - _WORST))
     chosen = np.append(np.arange(given), np.flatnonzero(far))
     start = samples.take(chosen)
-    away[chosen] = foot_points(basis, coefficients, start.points, start.values, spacing)[1]
+    away[chosen] = feet_of(basis, coefficients, start.points, start.values, spacing, jets=jets[:, chosen]).distance
     return jets[0], away, normals
 
 

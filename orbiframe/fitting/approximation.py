@@ -15,7 +15,7 @@ from orbiframe.fitting.config import Config
 from orbiframe.fitting.fixed_points import with_fixed
 from orbiframe.fitting.made import made, made_coefficients
 from orbiframe.fitting.mapping import Mapped, Mapping
-from orbiframe.fitting.meaning import Meaning, meaning_of
+from orbiframe.fitting.meaning import Meaning, facets_show, meaning_of
 from orbiframe.fitting.size import LEAST_SIZE, default_size, size_needed
 from orbiframe.fitting.stages import Stages
 from orbiframe.functions.basis import Basis
@@ -75,7 +75,7 @@ class Approximations:
         meaning = meaning_of(self.mapping.own_facets, self.config.data.means, size, self.config.data.creases)
         notes = () if needed <= basis.size else (too_few(basis.size, needed),)
         try:
-            if meaning.smooth and self.config.data.lift and self.config.data.creases is None:
+            if self._lifts(meaning, size):
                 mapped = self._lifted(mapped, basis, meaning)
                 basis = self._basis(mapped, size)
             fitter = self._fitter()
@@ -85,6 +85,11 @@ class Approximations:
         except FitError as error:
             raise FitError("; ".join((str(error), *notes))) from error
         return Approximation(surface, mapped, samples, meaning, accuracy, energy, notes)
+
+    def _lifts(self, meaning: Meaning, size: int) -> bool:
+        """Whether the mesh is mapped again without its facets: where it is smooth, and so coarse that they show."""
+        data = self.config.data
+        return meaning.smooth and data.lift and data.creases is None and facets_show(self.mapping.own_facets, size)
 
     def _accurate(self, rms: float, largest: float) -> Approximation:
         """More functions, and more of them where the error is, until the surface is near enough."""

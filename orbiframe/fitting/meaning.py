@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
+import numpy as np
+
 from orbiframe.functions.border_samples import with_border
 from orbiframe.functions.samples import Samples, coordinate_samples
 from orbiframe.functions.samples_of_sides import crease_samples
@@ -25,6 +27,8 @@ MEANINGS = ("auto", SMOOTH, SEMI_SMOOTH, FACETS)
 _SMOOTH, _SHARP = 0.20, 0.45
 # Beside creases nothing bends if no more than this share does.
 _FLAT = 1e-6
+# Facets no longer than this share of the distance of functions leave no mark in a fit.
+_SEEN = 0.3
 # So many samples of facets are enough; a mesh of needles would have many more than functions can tell apart.
 _LEAST_SAMPLES, _SAMPLES_PER_FUNCTION = 250_000, 100
 
@@ -70,12 +74,13 @@ def meaning_of(mesh: Polyhedron, asked: str, size: int, creases: float | None = 
     size: the number of functions; where it is less than that of the vertices, those say where the facets are; creases:
     from how many degrees on edges stay sharp: then what bends less is curved.
     """
-    share = bending(mesh).share
+    bends = bending(mesh)
+    share = bends.share
     if asked != "auto":
         return Meaning(asked, share, "as asked")
     if creases is not None:
         return _beside_creases(mesh, share, creases)
-    if mesh.edge_lengths @ bending(mesh).angle <= _FLAT * mesh.edge_lengths.sum():
+    if mesh.edge_lengths @ bends.angle <= _FLAT * mesh.edge_lengths.sum():
         return Meaning(FACETS, share, "it is flat")
     percent = f"{100 * share:.0f} % of its bending lies in edges of more than 40°"
     if share <= _SMOOTH:
@@ -85,6 +90,13 @@ def meaning_of(mesh: Polyhedron, asked: str, size: int, creases: float | None = 
     if len(mesh.vertices) > size:
         return Meaning(FACETS, share, f"{percent}, and it has more vertices than there are functions")
     return Meaning(SEMI_SMOOTH, share, percent)
+
+
+def facets_show(mesh: Polyhedron, size: int) -> bool:
+    """Whether the facets of a mesh are so long that so many functions would see them: their edges, mean on the area."""
+    square = mesh.edge_lengths**2
+    area = float(np.linalg.norm(vector_areas(mesh), axis=1).sum())
+    return float(square @ square) > _SEEN**2 * area / size * float(square.sum())
 
 
 def _beside_creases(mesh: Polyhedron, share: float, creases: float) -> Meaning:
