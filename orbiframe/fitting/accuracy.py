@@ -13,6 +13,7 @@ from orbiframe.errors import FitError
 from orbiframe.functions.basis import DifferentiableBasis
 from orbiframe.functions.feet import feet_of, foot_step
 from orbiframe.functions.samples import Samples, places
+from orbiframe.functions.smooth_samples import at_samples
 from orbiframe.meshes.edge_paths import first_largest
 from orbiframe.meshes.nearest_points import NearestPoints
 from orbiframe.meshes.sizes import vector_areas
@@ -104,6 +105,14 @@ def accuracy_of(surface: OrbifoldSurface) -> Accuracy:
         at_vertices,
         None if inside is None else border_of(surface),
     )
+
+
+def stray_of(surface: OrbifoldSurface, accuracy: Accuracy) -> float:
+    """The largest distance of the mesh from the surface, in sizes of the facets: the root of twice the area of each."""
+    refinement = surface.refinement
+    size = np.sqrt(2 * np.linalg.norm(vector_areas(refinement.facets), axis=1))
+    there = at_samples(surface.triangulation, refinement, size)[: len(accuracy.at_vertices)]
+    return float((accuracy.at_vertices / np.maximum(there, np.finfo(float).tiny)).max())
 
 
 def _seen(surface: OrbifoldSurface, samples: Samples, given: int) -> tuple[Floats, Floats, Floats]:

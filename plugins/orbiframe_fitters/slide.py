@@ -31,6 +31,8 @@ _GAIN = 0.97
 _LEAST_STEPS = 4
 # A smooth surface is shrunk to at least so much in one step at every datum: beyond, a limb is being pinched off.
 _LEAST_SHARE = 0.35
+# Fairness grows by such a factor where it would, up to this one.
+_STIFFER, _STIFFEST = 10.0, 1e4
 # So many steps of Newton's lead data that were left out so far to their feet.
 _ALL_STEPS = 2
 # Up to so many functions the equations of a step are factored as a whole; of more, iteration takes less time.
@@ -83,11 +85,18 @@ class Slide:
         return found
 
     def from_start(self, coefficients: Floats, steps: int) -> Floats:
-        """The coefficients after at most so many steps; a step that leads away is halved, then refused."""
+        """The coefficients after at most so many steps; a step that leads away is halved, then refused.
+
+        A step that would pinch off something asks for more fairness, for all steps to come.
+        """
         feet = self._slid([self._feet(part.points, part.values, coefficients) for part in self.data], coefficients)
-        distance = self._distance(feet)
+        distance, stiffer = self._distance(feet), 1.0
         for step in range(steps):
-            change = self._change(feet, coefficients, self.schedules[min(step, len(self.schedules) - 1)])
+            schedule = self.schedules[min(step, len(self.schedules) - 1)]
+            change = self._change(feet, coefficients, schedule.stiffer(stiffer))
+            while self._pinched(coefficients, coefficients + change) and stiffer < _STIFFEST:
+                stiffer *= _STIFFER
+                change = self._change(feet, coefficients, schedule.stiffer(stiffer))
             before = distance
             for share in (1.0, 0.5, 0.25):
                 trial = coefficients + share * change
