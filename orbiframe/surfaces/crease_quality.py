@@ -56,15 +56,15 @@ def crease_quality(surface: OrbifoldSurface) -> CreaseQuality | None:
     flat, basis = surface.triangulation, surface.basis
     if flat.crease is None or not isinstance(basis, ElementBasis):
         return None
-    graph = CreaseGraph.of(surface.refinement.polyhedron, flat.crease)
+    graph = CreaseGraph.of(surface.refinement.polyhedron, flat.sharp)
     curves = sum(1 for _ in graph.chains(flat))
-    degree = basis.domain.crease_degree
+    degree, sharp = basis.domain.sharp_degree, basis.domain.sharp
     kinks = np.degrees(_kinks(surface, basis))
     return CreaseQuality(
         curves,
         int((degree > 2).sum()),
         int((degree == 1).sum()),
-        int((basis.domain.creased & basis.domain.reference).sum()),
+        int((sharp & basis.domain.reference).sum()),
         _distance(surface),
         float(np.degrees(np.sqrt(np.mean(_angles(surface) ** 2)))),
         (float(np.sqrt(np.mean(kinks**2))), float(kinks.max())) if len(kinks) else (0.0, 0.0),
@@ -84,8 +84,7 @@ def _unplaced_normals(surface: OrbifoldSurface, points: Points) -> Floats:
 def _angles(surface: OrbifoldSurface) -> Floats:
     """The angle of the surface less that of the facets at the middles of the edges of the mesh on creases, (n,)."""
     flat, mesh = surface.triangulation, surface.refinement.polyhedron
-    assert flat.crease is not None
-    halfedge = np.flatnonzero(flat.crease & mesh.representative)
+    halfedge = np.flatnonzero(flat.sharp & mesh.representative)
     sides = halfedge, mesh.twin[halfedge]
     here, there = (surface.normals(_middles(surface, side)) * flat.face_signs[side // 3, None] for side in sides)
     corners = mesh.vertices[mesh.triangles]
@@ -111,8 +110,7 @@ def _between(a: Floats, b: Floats) -> Floats:
 def _distance(surface: OrbifoldSurface) -> float:
     """The largest distance between the creases of the mesh and those of the surface, both as chains of segments."""
     flat, mesh = surface.triangulation, surface.refinement.polyhedron
-    assert flat.crease is not None
-    halfedge = np.flatnonzero(flat.crease & mesh.representative)
+    halfedge = np.flatnonzero(flat.sharp & mesh.representative)
     ends = np.stack([mesh.tail[halfedge], mesh.head[halfedge]], axis=1)
     vertex = np.unique(ends)
     place = np.full(len(mesh.vertices), -1)

@@ -1,0 +1,48 @@
+"""Seams: where the plane faces of a shape end in something curved without an edge, as a plane does in a round."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from orbiframe.meshes.bending import bending
+from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.sizes import vector_areas
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+# Triangles that bend by less are one plane.
+_FLAT = np.radians(0.5)
+# A plane face is so many times as wide as what most of its border that is no crease runs along.
+_WIDE = 3.0
+
+
+def seams(mesh: Polyhedron, crease: Bools) -> Bools:
+    """The borders of the plane faces of a triangle mesh as far as they are no creases, (H,).
+
+    crease: (H,), the sharp edges. Triangles in one plane are one region, whose width is twice its area over its
+    perimeter. The strips of which a round is made are regions as well, all about as wide; a region next to narrower
+    ones is a plane face.
+    """
+    angle = bending(mesh).angle
+    region = _regions(mesh, (angle < _FLAT) & ~crease)
+    border = region[mesh.face] != region[mesh.face[mesh.twin]]
+    area = np.bincount(region, weights=np.linalg.norm(vector_areas(mesh), axis=1))
+    perimeter = np.bincount(region[mesh.face], weights=mesh.edge_lengths * border, minlength=len(area))
+    width = 2 * area / np.maximum(perimeter, np.finfo(float).tiny)
+    soft, own, other = border & ~crease, region[mesh.face], region[mesh.face[mesh.twin]]
+    much = mesh.edge_lengths * soft
+    narrow = np.bincount(own, weights=much * (width[own] > _WIDE * width[other]), minlength=len(area))
+    plane = narrow > np.bincount(own, weights=much, minlength=len(area)) / 2
+    return np.asarray(soft & (plane[own] | plane[other]))
+
+
+def _regions(mesh: Polyhedron, joined: Bools) -> Ints:
+    """The number of the region of every triangle, (F,); joined: (H,), the edges inside of regions."""
+    links = mesh.face[joined], mesh.face[mesh.twin[joined]]
+    graph = coo_array((np.ones(len(links[0])), links), shape=(mesh.face_count, mesh.face_count))
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
