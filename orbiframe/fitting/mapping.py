@@ -26,7 +26,7 @@ from orbiframe.groups.marked_group import MarkedGroup
 from orbiframe.groups.marking import Marking
 from orbiframe.meshes.bending import bending, sharp_edges
 from orbiframe.meshes.bisection import Bisection, affordable_length, bisected, even_edge_length, triangles_made
-from orbiframe.meshes.curving import curvatures
+from orbiframe.meshes.curving import Curving
 from orbiframe.meshes.edge_log import EdgeLog
 from orbiframe.meshes.fine_marks import fine_largest, fine_marks
 from orbiframe.meshes.flat_flips import flat_flips
@@ -163,7 +163,7 @@ class Mapping:
         soft = seams(refinement.facets, sharp)
         crease, seam = fine_marks(refinement, sharp | soft), fine_marks(refinement, soft) if soft.any() else None
         kept = None if self.like is None else self.like.creased(mapped.triangulation, crease, size)
-        asked = Asked(size, unknowns, fine_largest(refinement, curvatures(refinement.facets, sharp | soft)), larger)
+        asked = Asked(size, unknowns, fine_largest(refinement, Curving.of(refinement.facets, sharp).curvatures), larger)
         found = creased(mapped.triangulation, crease, asked, seam) if kept is None else kept
         unshaped = mapped.first.points is mapped.triangulation.points
         return mapped._replace(first=found if unshaped else mapped.first, triangulation=found)

@@ -24,6 +24,16 @@ _WIDE = 3.0
 def seams(mesh: Polyhedron, crease: Bools) -> Bools:
     """The borders of the plane faces of a triangle mesh as far as they are no creases, (H,).
 
+    crease: (H,), the sharp edges.
+    """
+    region, plane = plane_faces(mesh, crease)
+    own, other = region[mesh.face], region[mesh.face[mesh.twin]]
+    return np.asarray((own != other) & ~crease & (plane[own] | plane[other]))
+
+
+def plane_faces(mesh: Polyhedron, crease: Bools) -> tuple[Ints, Bools]:
+    """The region of every triangle of a mesh, (F,), and whether each region is a plane face, (R,).
+
     crease: (H,), the sharp edges. Triangles in one plane are one region, whose width is twice its area over its
     perimeter. The strips of which a round is made are regions as well, all about as wide; a region next to narrower
     ones is a plane face.
@@ -37,8 +47,7 @@ def seams(mesh: Polyhedron, crease: Bools) -> Bools:
     soft, own, other = border & ~crease, region[mesh.face], region[mesh.face[mesh.twin]]
     much = mesh.edge_lengths * soft
     narrow = np.bincount(own, weights=much * (width[own] > _WIDE * width[other]), minlength=len(area))
-    plane = narrow > np.bincount(own, weights=much, minlength=len(area)) / 2
-    return np.asarray(soft & (plane[own] | plane[other]))
+    return region, np.asarray(narrow > np.bincount(own, weights=much, minlength=len(area)) / 2)
 
 
 def _regions(mesh: Polyhedron, joined: Bools) -> Ints:
