@@ -102,8 +102,8 @@ def _boundary(boundary: Mapping[str, Any] | None) -> Iterator[tuple[str, str]]:
 
 def _distances(distance: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Distances both ways and at the vertices, with the place where the mesh is missed most."""
-    parts = ("mesh_to_surface", "to the surface"), ("surface_to_mesh", "back"), ("vertices_to_surface", "vertices")
-    words = (f"{name} {distance[key]['rms']:.2e} (max {distance[key]['max']:.2e})" for key, name in parts)
+    parts = {"mesh_to_surface": "to the surface", "surface_to_mesh": "back", "vertices_to_surface": "vertices"}
+    words = (f"{name} {distance[key]['rms']:.2e} (max {distance[key]['max']:.2e})" for key, name in parts.items())
     place = ", ".join(f"{x:.4g}" for x in distance["mesh_to_surface"]["place"])
     yield "distance", f"{', '.join(words)}; farthest at ({place})"
 

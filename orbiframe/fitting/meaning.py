@@ -41,6 +41,10 @@ class Meaning(NamedTuple):
         """Whether the vertices alone are the truth."""
         return self.name == SMOOTH
 
+    def arcs(self, triangulation: Triangulation) -> bool:
+        """Whether bent facets stand for arcs over them, and flat ones for themselves."""
+        return triangulation.crease is not None and self.name == SEMI_SMOOTH
+
     def samples(
         self, triangulation: Triangulation, refinement: Bisection, size: int, noise: float | None = None
     ) -> Samples:

@@ -149,6 +149,7 @@ def _distances_report(accuracy: Accuracy, surface: OrbifoldSurface, of_output: f
         "mesh_to_surface": accuracy.to_surface,
         "surface_to_mesh": accuracy.to_mesh,
         "vertices_to_surface": accuracy.vertices,
+        **({} if accuracy.arcs is None else {"arcs_to_surface": accuracy.arcs}),
     }
     return {
         name: {

@@ -18,7 +18,9 @@ Bools = NDArray[np.bool_]
 # Triangles that bend by less are one plane.
 _FLAT = np.radians(0.5)
 # A plane face is so many times as wide as what most of its border that is no crease runs along.
-_WIDE = 3.0
+_WIDE, _MOST = 3.0, 0.8
+# To what it runs along it bends by at most this share of the bends beyond: half of them where a round is even.
+_AS_MUCH = 1.2
 
 
 def seams(mesh: Polyhedron, crease: Bools) -> Bools:
@@ -35,8 +37,9 @@ def plane_faces(mesh: Polyhedron, crease: Bools) -> tuple[Ints, Bools]:
     """The region of every triangle of a mesh, (F,), and whether each region is a plane face, (R,).
 
     crease: (H,), the sharp edges. Triangles in one plane are one region, whose width is twice its area over its
-    perimeter. The strips of which a round is made are regions as well, all about as wide; a region next to narrower
-    ones is a plane face.
+    perimeter. The strips of which a round is made are regions as well. A region is a plane face if most of its border
+    that is no crease runs along narrower ones, to which it bends no more than these do to those beyond: a wide strip of
+    a round among narrow ones bends more.
     """
     angle = bending(mesh).angle
     region = _regions(mesh, (angle < _FLAT) & ~crease)
@@ -46,8 +49,20 @@ def plane_faces(mesh: Polyhedron, crease: Bools) -> tuple[Ints, Bools]:
     width = 2 * area / np.maximum(perimeter, np.finfo(float).tiny)
     soft, own, other = border & ~crease, region[mesh.face], region[mesh.face[mesh.twin]]
     much = mesh.edge_lengths * soft
-    narrow = np.bincount(own, weights=much * (width[own] > _WIDE * width[other]), minlength=len(area))
-    return region, np.asarray(narrow > np.bincount(own, weights=much, minlength=len(area)) / 2)
+    tangent = angle <= _AS_MUCH * _beyond(np.where(soft, angle, 0.0), own, other)
+    narrow = np.bincount(own, weights=much * (tangent & (width[own] > _WIDE * width[other])), minlength=len(area))
+    return region, np.asarray(narrow > _MOST * np.bincount(own, weights=much, minlength=len(area)))
+
+
+def _beyond(angle: Floats, own: Ints, other: Ints) -> Floats:
+    """For every halfedge the largest angle by which the region beyond it bends to a third one, (H,)."""
+    order = np.lexsort((angle, own))
+    last = order[np.append(np.flatnonzero(np.diff(own[order])), len(order) - 1)]
+    largest, neighbour = np.zeros(int(own.max()) + 1), np.full(int(own.max()) + 1, -1)
+    largest[own[last]], neighbour[own[last]] = angle[last], other[last]
+    second, third = np.zeros(len(largest)), other != neighbour[own]
+    np.maximum.at(second, own[third], angle[third])
+    return np.asarray(np.where(neighbour[other] == own, second[other], largest[other]))
 
 
 def _regions(mesh: Polyhedron, joined: Bools) -> Ints:
