@@ -8,6 +8,7 @@ import numpy as np
 from fitted import DATASETS, REGISTRY
 
 from orbiframe.delaunay.crease_domain import creased
+from orbiframe.delaunay.crease_sites import Asked
 from orbiframe.files import gate
 from orbiframe.fitting import pipeline
 from orbiframe.fitting.config import Config
@@ -68,4 +69,4 @@ def flat_map(name: str, longest: float = 0.04) -> tuple[Triangulation, Bisection
 def placed(name: str, size: int = 300, angle: float = 30) -> Triangulation:
     """The same with creases and sites for ps2."""
     triangulation, refinement = flat_map(name)
-    return creased(triangulation, sharp_edges(refinement.polyhedron, angle), size, (3, 0, 0))
+    return creased(triangulation, sharp_edges(refinement.polyhedron, angle), Asked(size, (3, 0, 0)))

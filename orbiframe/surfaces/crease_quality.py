@@ -31,7 +31,8 @@ class CreaseQuality(NamedTuple):
     curves: how many run between corners, ends and themselves; corners, ends: of creases; edges: of the domain;
     distance: the largest of the vertices on the creases of the mesh from the creases of the surface and back, in
     diagonals; angle: the root mean square of what the angle of the surface lacks to that of the facets, in degrees;
-    kinks: the root mean square and the largest of the angles at hairs, where the surface should be smooth, in degrees.
+    kinks: the root mean square and the largest of the angles at hairs, where the surface should be smooth, in degrees;
+    place: where the largest is, in space.
     """
 
     curves: int
@@ -41,13 +42,15 @@ class CreaseQuality(NamedTuple):
     distance: float
     angle: float
     kinks: tuple[float, float]
+    place: tuple[float, float, float]
 
     def notes(self) -> Iterator[str]:
         """Sentences for what a user should look at."""
         if self.kinks[1] > _KINK:
+            where = ", ".join(f"{x:.6g}" for x in self.place)
             yield (
-                f"the surface has kinks of up to {self.kinks[1]:.1f}° beside its creases, where it should be smooth; "
-                "more functions help (option size)"
+                f"the surface has kinks of up to {self.kinks[1]:.1f}° beside its creases, where it should be smooth, "
+                f"near ({where}); more functions help (option size), or a larger angle"
             )
 
 
@@ -59,7 +62,7 @@ def crease_quality(surface: OrbifoldSurface) -> CreaseQuality | None:
     graph = CreaseGraph.of(surface.refinement.polyhedron, flat.sharp)
     curves = sum(1 for _ in graph.chains(flat))
     degree, sharp = basis.domain.sharp_degree, basis.domain.sharp
-    kinks = np.degrees(_kinks(surface, basis))
+    kinks, place = _kinks(surface, basis)
     return CreaseQuality(
         curves,
         int((degree > 2).sum()),
@@ -68,13 +71,19 @@ def crease_quality(surface: OrbifoldSurface) -> CreaseQuality | None:
         _distance(surface),
         float(np.degrees(np.sqrt(np.mean(_angles(surface) ** 2)))),
         (float(np.sqrt(np.mean(kinks**2))), float(kinks.max())) if len(kinks) else (0.0, 0.0),
+        place,
     )
 
 
-def _kinks(surface: OrbifoldSurface, basis: ElementBasis) -> Floats:
-    """The angles between the tangent planes on both sides of hairs, (n,)."""
+def _kinks(surface: OrbifoldSurface, basis: ElementBasis) -> tuple[Floats, tuple[float, float, float]]:
+    """The angles between the tangent planes on both sides of hairs in degrees, (n,), and where the largest is."""
     inside, outside, _ = hair_points(basis.domain)
-    return _between(_unplaced_normals(surface, inside), _unplaced_normals(surface, outside))
+    found = np.degrees(_between(_unplaced_normals(surface, inside), _unplaced_normals(surface, outside)))
+    if not len(found):
+        return found, (0.0, 0.0, 0.0)
+    worst = found.argmax(keepdims=True)
+    x, y, z = (float(number) for number in surface.evaluate(Points(inside.patch[worst], inside.x[worst]))[0])
+    return found, (x, y, z)
 
 
 def _unplaced_normals(surface: OrbifoldSurface, points: Points) -> Floats:

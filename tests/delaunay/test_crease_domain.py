@@ -12,6 +12,7 @@ from hypothesis import given, settings, strategies as st
 
 from orbiframe.delaunay import crease_domain
 from orbiframe.delaunay.crease_domain import crease_triangulation, creased, off_geodesics
+from orbiframe.delaunay.crease_sites import Asked
 from orbiframe.delaunay.forced_edges import with_edge
 from orbiframe.delaunay.site_triangulation import delaunay_of_vertices
 from orbiframe.delaunay.sites import vertex_points
@@ -90,7 +91,7 @@ def test_a_crease_that_finds_no_place_is_named(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(crease_domain, "_LAST_ROUNDS", 0)
     triangulation, refinement = flat_map("klein_bottle.off")
     with pytest.raises(MapError, match=r"a crease near \(.*\) of the mesh.*more functions.*larger angle"):
-        creased(triangulation, sharp_edges(refinement.polyhedron, 30), 300, (3, 0, 0))
+        creased(triangulation, sharp_edges(refinement.polyhedron, 30), Asked(300, (3, 0, 0)))
 
 
 def test_sites_without_their_edges_are_refused() -> None:
