@@ -27,15 +27,15 @@ _TRIALS, _ENOUGH = 5, 0.08
 _BEND = np.radians(45)
 # What the surface turns by from site to site, if there are as many functions as asked for without its curvature.
 _ARC = np.radians(60)
-# Extra unknowns of a vertex on a crease, and extra open edges there: one of the crease, two hairs.
-_EXTRA_AT_VERTEX, _EXTRA_EDGES = 2, 3
 
 
 class Asked(NamedTuple):
-    """What sites are for: about `size` functions, of which so many belong to a vertex, an edge and a triangle.
+    """What sites are for: about `size` functions, of which so many belong to a vertex, an edge and a triangle; a vertex
+    on a crease has two more, and one more edge of the crease and two hairs are open.
 
     curvature: (V,), one over the radius of curvature at the vertices of the mesh; larger: more functions than asked for
-    are made where the curvature asks for them; grading: how much the density follows the girth.
+    are made where the curvature asks for them; grading: how much the density follows the girth; more: unknowns of a
+    vertex on a crease, and open edges there, besides.
     """
 
     size: int
@@ -43,12 +43,13 @@ class Asked(NamedTuple):
     curvature: Floats | None = None
     larger: bool = False
     grading: float = 0.6
+    more: tuple[int, int] = (2, 3)
 
 
 def crease_sites(triangulation: Triangulation, asked: Asked) -> Ints:
     """Sites on the creases of a map, then between them, about as many as the functions ask for."""
     at_vertex, on_edge, in_face = asked.unknowns
-    each, more = at_vertex + 3 * on_edge + 2 * in_face, _EXTRA_AT_VERTEX + _EXTRA_EDGES * on_edge
+    each, more = at_vertex + 3 * on_edge + 2 * in_face, asked.more[0] + asked.more[1] * on_edge
     mesh, density = triangulation.polyhedron, site_density(triangulation, asked.grading)
     area = np.linalg.norm(vector_areas(mesh), axis=1) @ (density[mesh.triangles].mean(axis=1) ** 2)
     spacing = float(np.sqrt(each * area / asked.size))
@@ -126,5 +127,3 @@ def _with_hub(graph: Graph, rim: Ints, length: Floats) -> Graph:
     start = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=count + 1))]).astype(np.intp)
     none = np.zeros(len(owner), dtype=np.intp)
     return Graph(start, neighbour[order], lengths[order], none, none.astype(np.bool_))
-
-

@@ -81,7 +81,9 @@ class Approximations:
             fitter = self._fitter()
             samples, surface = self._surface(mapped, basis, meaning, fitter, self.config)
             surface = self._moved(surface)
-            accuracy = self.stages("error", accuracy_of, surface, samples if meaning.arcs(mapped.triangulation) else None)
+            accuracy = self.stages(
+                "error", accuracy_of, surface, samples if meaning.arcs(mapped.triangulation) else None
+            )
         except FitError as error:
             raise FitError("; ".join((str(error), *notes))) from error
         return Approximation(surface, mapped, samples, meaning, accuracy, energy, notes)

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.meshes.bending import bending
-from orbiframe.meshes.seams import plane_faces
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.seams import plane_faces
 from orbiframe.meshes.sizes import vector_areas
 
 Floats = NDArray[np.float64]

@@ -53,9 +53,7 @@ class CreaseGraph(NamedTuple):
     stops: Ints
 
     @classmethod
-    def of(
-        cls, mesh: Polyhedron, crease: Bools, stops: Ints | None = None, seam: Bools | None = None
-    ) -> CreaseGraph:
+    def of(cls, mesh: Polyhedron, crease: Bools, stops: Ints | None = None, seam: Bools | None = None) -> CreaseGraph:
         """The graph of marked halfedges (H,), with the stops given, or the corners and ends of creases.
 
         seam: (H,), those of another kind; a curve is of one kind, and stops where it changes.

@@ -37,7 +37,7 @@ _ALL_STEPS = 2
 _DIRECT = 200
 # How much a kink across a hair counts against a distance of what it would lift at the spacing of the functions.
 _KINK = 10.0
-# And how much a jump of the slope within the surface does, against a kink: beside curved facets, and where all are flat.
+# How much a jump of the slope within the surface counts against a kink, beside curved facets, and if all are flat.
 _SLIDE = 1e-5, 1e-7
 
 
