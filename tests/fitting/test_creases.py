@@ -262,6 +262,24 @@ def test_elements_of_a_creased_surface_do_not_straddle_creases() -> None:
     assert (sizes[:, 2] < 1e-4 * sizes[:, 0]).all()
 
 
+@pytest.mark.parametrize("name", ["cube.off", PLATE])
+def test_cad_files_have_every_crease_as_edges_at_its_angle(tmp_path: Path, name: str) -> None:
+    """Read back by Open CASCADE: a valid solid; its sharp edges are as long as those of the mesh, at right angles."""
+    pytest.importorskip("OCP", reason='Open CASCADE is the extra "orbiframe[cad]"')
+    import opened_shapes as opened
+
+    options = (30, 300, "basis.name=ps2") if name == "cube.off" else (30, 600)
+    shape = opened.reopened(fitted_with_creases(name, *options).surface, tmp_path / "creased.step")
+    assert opened.is_valid(shape)
+    assert opened.is_solid(shape)
+    edges, mesh = opened.angles_at_edges(shape), mesh_of(name)
+    sharp, wanted = edges[:, 1] > 1, bending(mesh).angle > 0.5
+    assert edges[sharp, 0].sum() == pytest.approx((mesh.edge_lengths * wanted * mesh.representative).sum(), rel=1e-4)
+    assert np.abs(edges[sharp, 1] - 90).max() < 0.5
+    volume = np.linalg.det(mesh.vertices[mesh.triangles]).sum() / 6
+    assert opened.volume(shape) == pytest.approx(volume, rel=1e-4)
+
+
 def test_few_faces_of_a_creased_surface_are_refused(tmp_path: Path) -> None:
     pytest.importorskip("OCP", reason='Open CASCADE is the extra "orbiframe[cad]"')
     from orbiframe_exact.open_cascade import write_step
