@@ -72,7 +72,8 @@ class Approximations:
         needed = size_needed(basis, energy)
         if needed > basis.size and self._given_size is None:
             return self.of_size(max(needed, basis.size + 100), density)
-        meaning = meaning_of(self.mapping.own_facets, self.config.data.means, size, self.config.data.creases)
+        sharp = None if self.config.data.creases is None else self.mapping.sharp(self.mapping.own_facets)
+        meaning = meaning_of(self.mapping.own_facets, self.config.data.means, size, sharp)
         notes = () if needed <= basis.size else (too_few(basis.size, needed),)
         try:
             if meaning.smooth and self.config.data.lift and self.config.data.creases is None:

@@ -159,7 +159,7 @@ class Mapping:
         vertex, an edge and a triangle of the domain.
         """
         refinement = mapped.refinement
-        sharp = self._sharp(refinement.facets)
+        sharp = self.sharp(refinement.facets)
         soft = seams(refinement.facets, sharp)
         crease, seam = fine_marks(refinement, sharp | soft), fine_marks(refinement, soft) if soft.any() else None
         kept = None if self.like is None else self.like.creased(mapped.triangulation, crease, size)
@@ -168,16 +168,30 @@ class Mapping:
         unshaped = mapped.first.points is mapped.triangulation.points
         return mapped._replace(first=found if unshaped else mapped.first, triangulation=found)
 
-    def _sharp(self, mesh: Polyhedron) -> NDArray[np.bool_]:
-        """The creases of the refined mesh. Raises ConfigError where there is none."""
+    def sharp(self, mesh: Polyhedron) -> NDArray[np.bool_]:
+        """The creases of the triangles, or of the facets, (H,). Raises ConfigError where there is none."""
         degrees = self.config.data.creases
         assert degrees is not None
+        if degrees == "marked":
+            return self._marked(mesh)
         found = sharp_edges(mesh, degrees)
         if not found.any():
             sharpest = float(np.degrees(bending(mesh).angle.max()))
             raise ConfigError(
                 f"{place_of('data.creases', self.config.places)}no edge of the mesh bends by {degrees:g}° or more (the "
                 f"sharpest by {sharpest:.1f}°), so that there is no crease; take a smaller angle, or leave it out"
+            )
+        return found
+
+    def _marked(self, mesh: Polyhedron) -> NDArray[np.bool_]:
+        marked = self.triangles.marked
+        found = None if marked is None else marked.among(mesh.tail, mesh.head)
+        if found is None or not found.any():
+            known = "none is" if marked is None else f"of {len(marked.ends)} marks none belongs to an edge of a face"
+            raise ConfigError(
+                f"{place_of('data.creases', self.config.places)}no edge of the mesh is marked as sharp ({known}); "
+                "marks are an element 'edge' with vertex1, vertex2 and crease in PLY, and lines "
+                "'t crease 2/1/0 v w sharpness' in OBJ; or give an angle"
             )
         return found
 

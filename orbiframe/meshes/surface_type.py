@@ -72,8 +72,10 @@ def without_unused_vertices(polyhedron: Polyhedron) -> Polyhedron:
         return polyhedron
     number = np.cumsum(used) - 1
     normals, colors = (None if a is None else a[used] for a in (polyhedron.normals, polyhedron.colors))
-    tail = number[polyhedron.tail]
-    return replace(polyhedron, vertices=polyhedron.vertices[used], tail=tail, normals=normals, colors=colors)
+    tail, marked = number[polyhedron.tail], polyhedron.marked
+    marked = None if marked is None else marked.renumbered(np.where(used, number, -1))
+    tables = {"normals": normals, "colors": colors, "marked": marked}
+    return replace(polyhedron, vertices=polyhedron.vertices[used], tail=tail, **tables)
 
 
 def _used_vertices(polyhedron: Polyhedron) -> Bools:

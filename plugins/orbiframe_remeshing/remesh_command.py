@@ -35,7 +35,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--order", metavar="Q", type=int, help="write curved triangles of order 1 to 6, for finite elements")
     add("--format", metavar="NAME", help="with --order: the format, such as gmsh-2.2, instead of that of the suffix")
     add("--size", metavar="N", type=int, help="number of functions of the surface (basis.size)")
-    add("--creases", metavar="ANGLE", type=float, help="edges that bend by ANGLE degrees or more stay sharp, as edges")
+    add("--creases", metavar="ANGLE", help="edges that bend by ANGLE degrees or more stay, or 'marked' (data.creases)")
     add("--config", metavar="FILE.toml", type=Path, help="components and options of the fit")
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.name=ps6")
     add("--seed", metavar="S", type=int, default=0, help="another mesh of the same kind; default 0")
