@@ -103,11 +103,11 @@ def _with_edges(
             domain, vertex[sites] = again.triangulation, again.vertex[vertex[sites]]
     if missing:
         edges = _edges_under(domain, triangulation, pieces, vertex)
-    found = replace(domain, crease=_flags(domain, edges))
+    domain = replace(domain, crease=_flags(domain, edges))
     if triangulation.seam is not None:
         smooth = triangulation.seam[np.array([piece.first for piece in pieces])]
-        found = replace(found, seam=_flags(domain, edges[smooth]))
-    return found, pieces, edges
+        domain = replace(domain, seam=_flags(domain, edges[smooth]))
+    return domain, pieces, edges
 
 
 def _flags(domain: GeodesicTriangulation, halfedges: Ints) -> Bools:

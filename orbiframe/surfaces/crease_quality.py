@@ -81,7 +81,7 @@ def _kinks(surface: OrbifoldSurface, basis: ElementBasis) -> tuple[Floats, tuple
     found = np.degrees(_between(_unplaced_normals(surface, inside), _unplaced_normals(surface, outside)))
     if not len(found):
         return found, (0.0, 0.0, 0.0)
-    worst = found.argmax(keepdims=True)
+    worst = np.array([found.argmax()])
     x, y, z = (float(number) for number in surface.evaluate(Points(inside.patch[worst], inside.x[worst]))[0])
     return found, (x, y, z)
 

@@ -63,8 +63,8 @@ class CreaseGraph(NamedTuple):
         if stops is None:
             stops = _corners(mesh, graph, links)
             if seam is not None:
-                ends = [np.union1d(mesh.tail[kind], mesh.head[kind]) for kind in (seam, crease & ~seam)]
-                stops = np.union1d(stops, np.intersect1d(*ends))
+                smooth, sharp = (np.union1d(mesh.tail[kind], mesh.head[kind]) for kind in (seam, crease & ~seam))
+                stops = np.union1d(stops, np.intersect1d(smooth, sharp))
         return cls(mesh, graph, links, np.asarray(stops))
 
     def chains(self, triangulation: Triangulation) -> Iterator[Chain]:
