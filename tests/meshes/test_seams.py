@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from creased import cylinder, mesh_of
+from creased import cylinder, mesh_of, rounded_bar
 from documents import ROOT
 from fitted import REGISTRY
 
@@ -25,24 +25,9 @@ from orbiframe.meshes.seams import plane_faces, seams
 PLATE = ROOT.parent / "shared" / "meshes" / "trimesh_plate_holes.STL"
 
 
-def rounded_bar(steps: int = 6, width: float = 4.0, radius: float = 0.5) -> Polyhedron:
-    """A prism over a square with two round corners: planes that end in quarters of a cylinder, along its length."""
-    turn = np.pi / 2 * np.arange(steps + 1) / steps
-    arc = radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-    inner = width - radius
-    other = np.stack([-arc[:, 1], arc[:, 0]], axis=1) + np.array([radius, inner])
-    outline = np.concatenate([arc + inner, other, np.array([[0, 0], [width, 0]])])
-    count = len(outline)
-    vertices = np.concatenate([np.column_stack([outline, np.full(count, z)]) for z in (0.0, 3.0)])
-    walls = [[i, (i + 1) % count, count + (i + 1) % count, count + i] for i in range(count)]
-    return triangulated(
-        Polyhedron.from_faces(vertices, [*walls, list(range(count))[::-1], list(range(count, 2 * count))])
-    )
-
-
 def test_planes_end_in_seams_where_a_round_begins() -> None:
     """Two rounds with two ends each, as long as the bar: four seams, with z from 0 to 3 at x or y of the tangent."""
-    mesh = rounded_bar()
+    mesh = triangulated(rounded_bar())
     crease = sharp_edges(mesh, 30)
     found = np.flatnonzero(seams(mesh, crease) & mesh.representative)
     ends = np.sort(np.round(mesh.vertices[np.stack([mesh.tail[found], mesh.head[found]], axis=1)][:, :, :2], 9), axis=1)
