@@ -33,15 +33,15 @@ class Asked(NamedTuple):
     """What sites are for: about `size` functions, of which so many belong to a vertex, an edge and a triangle; a vertex
     on a crease has two more, and one more edge of the crease and two hairs are open.
 
-    curvature: (V,), one over the radius of curvature at the vertices of the mesh; larger: more functions than asked for
-    are made where the curvature asks for them; grading: how much the density follows the girth; more: unknowns of a
-    vertex on a crease, and open edges there, besides.
+    curvature: (V,), one over the radius of curvature at the vertices of the mesh; most: up to so many functions are
+    made if curvature and creases ask for more than size; grading: how much the density follows the girth; more:
+    unknowns of a vertex on a crease, and open edges there, besides.
     """
 
     size: int
     unknowns: tuple[int, int, int]
     curvature: Floats | None = None
-    larger: bool = False
+    most: int = 0
     grading: float = 0.6
     more: tuple[int, int] = (2, 3)
 
@@ -56,12 +56,14 @@ def crease_sites(triangulation: Triangulation, asked: Asked) -> Ints:
     if asked.curvature is not None:
         density = np.maximum(density, asked.curvature * spacing / _ARC)
     spread = _Spread(triangulation, mesh.edge_lengths * (density[mesh.tail] + density[mesh.head]) / 2)
-    for _ in range(_TRIALS):
+    goal = asked.size
+    for trial in range(_TRIALS):
         on, between = spread.sites(spacing)
         found = (each + more) * len(on) + each * len(between)
-        if asked.larger or abs(found / asked.size - 1) < _ENOUGH:
+        goal = goal if trial else max(goal, min(found, asked.most))
+        if abs(found / goal - 1) < _ENOUGH:
             break
-        spacing *= float(np.clip(np.sqrt(found / asked.size), 0.5, 2.0))
+        spacing *= float(np.clip(np.sqrt(found / goal), 0.5, 2.0))
     return np.unique(np.concatenate([on, between]))
 
 

@@ -66,7 +66,7 @@ class Approximations:
         """The surface of so many functions; of more if they cannot follow the map and no number is asked for."""
         mapped = self.mapping.for_size(size)
         mapped = mapped if density is None else mapped.with_density(density.on(mapped.refinement))
-        mapped = self._creased(mapped, size, larger=self._given_size is None and density is None)
+        mapped = self._creased(mapped, size, 0 if self._given_size or density else _LARGEST_SIZE)
         energy = girth(mapped.triangulation).energy
         basis = self._basis(mapped, size)
         needed = size_needed(basis, energy)
@@ -117,12 +117,12 @@ class Approximations:
         chi = self.mapping.surface_type.euler_characteristic
         return default_size(energy, len(self.mapping.triangles.vertices), chi)
 
-    def _creased(self, mapped: Mapped, size: int, larger: bool) -> Mapped:
+    def _creased(self, mapped: Mapped, size: int, most: int) -> Mapped:
         """The map with creases, if they are to stay."""
         if self.config.data.creases is None:
             return mapped
         unknowns = self.stages.registry.load("basis", self.config.basis.name).crease_unknowns  # type: ignore[attr-defined]
-        creased: Mapped = self.stages("creases", self.mapping.creased, mapped, size, unknowns, larger)
+        creased: Mapped = self.stages("creases", self.mapping.creased, mapped, size, unknowns, most)
         return creased
 
     def _basis(self, mapped: Mapped, size: int) -> Basis:

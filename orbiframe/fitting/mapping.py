@@ -152,18 +152,18 @@ class Mapping:
             self.maps[key] = Mapped(found.refinement, first, first, found)
         return self.maps[key]
 
-    def creased(self, mapped: Mapped, size: int, unknowns: tuple[int, int, int], larger: bool) -> Mapped:
+    def creased(self, mapped: Mapped, size: int, unknowns: tuple[int, int, int], most: int) -> Mapped:
         """The map with creases where the mesh is sharp, and seams where plane faces end; see `data.creases`.
 
-        For about `size` functions, or more where curved parts ask for them. unknowns: of which so many belong to a
-        vertex, an edge and a triangle of the domain.
+        For about `size` functions, or up to `most` where curved parts ask for them. unknowns: of which so many belong
+        to a vertex, an edge and a triangle of the domain.
         """
         refinement = mapped.refinement
         sharp = self.sharp(refinement.facets)
         soft = seams(refinement.facets, sharp)
         crease, seam = fine_marks(refinement, sharp | soft), fine_marks(refinement, soft) if soft.any() else None
         kept = None if self.like is None else self.like.creased(mapped.triangulation, crease, size)
-        asked = Asked(size, unknowns, fine_largest(refinement, Curving.of(refinement.facets, sharp).curvatures), larger)
+        asked = Asked(size, unknowns, fine_largest(refinement, Curving.of(refinement.facets, sharp).curvatures), most)
         found = creased(mapped.triangulation, crease, asked, seam) if kept is None else kept
         unshaped = mapped.first.points is mapped.triangulation.points
         return mapped._replace(first=found if unshaped else mapped.first, triangulation=found)
