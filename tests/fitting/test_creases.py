@@ -194,6 +194,11 @@ def _one_side(arrays: dict[str, np.ndarray]) -> None:
     _put("crease", first, False)(arrays)
 
 
+def _one_side_of_a_seam(arrays: dict[str, np.ndarray]) -> None:
+    arrays["seam"] = arrays["crease"].copy()
+    arrays["seam"][np.flatnonzero(arrays["crease"])[0]] = False
+
+
 def _without_a_corner(arrays: dict[str, np.ndarray]) -> None:
     tail = arrays["fine_tail"][arrays["crease"]]
     corner = np.flatnonzero(np.bincount(tail) == 3)[0]
@@ -222,6 +227,8 @@ BROKEN = {
     "a site out of range": (_put("sites", 0, 10**6), "sites", "vertices are 0 to"),
     "a site twice": (lambda a: a.update(sites=np.append(a["sites"], a["sites"][0])), "sites", "different"),
     "a corner that is no site": (_without_a_corner, "sites", "ends and corners"),
+    "seams that are no creases": (lambda a: a.update(seam=~a["crease"]), "seam", "seams are among the creases"),
+    "one halfedge of a seam": (_one_side_of_a_seam, "seam", "both halfedges"),
     "a crease beside its geodesic": (_beside_its_geodesic, "points", "along geodesics from site to site"),
     "sites without their edges": (_few_sites, "(points|sites)", "(along geodesics|Delaunay)"),
 }

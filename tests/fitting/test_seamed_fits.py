@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from creased import fitted_with_creases, mesh_of
 from documents import ROOT
 from fitted import REGISTRY
 
+from orbiframe.files.surface_file import load_surface, save_surface
 from orbiframe.fitting import pipeline
 from orbiframe.fitting.config import Config
 from orbiframe.meshes.sizes import vector_areas
@@ -84,6 +86,30 @@ def test_without_seams_the_planes_are_not_plane(monkeypatch: pytest.MonkeyPatch)
     config = Config.load(overrides=["basis.size=600", "data.creases=30", "output.refine=1"])
     plain = pipeline.fit(mesh_of("rounded bar"), config, REGISTRY)
     assert off(plain.surface, from_bar)[0] > 3 * off(fitted_with_creases("rounded bar", 30, 600).surface, from_bar)[0]
+
+
+def test_a_saved_surface_has_its_seams(tmp_path: Path) -> None:
+    surface = fitted_with_creases("rounded bar", 30, 600).surface
+    save_surface(surface, tmp_path / "bar.npz")
+    again = load_surface(tmp_path / "bar.npz", REGISTRY)
+    np.testing.assert_array_equal(again.triangulation.seam, surface.triangulation.seam)
+    np.testing.assert_array_equal(again.basis.domain.seam, surface.basis.domain.seam)
+    np.testing.assert_array_equal(again.tessellate(2).vertices, surface.tessellate(2).vertices)
+    refined = surface.basis.domain.refined()
+    assert refined.seam.sum() == 2 * surface.basis.domain.seam.sum()
+    assert (refined.crease | ~refined.seam).all()
+
+
+def test_a_map_with_seams_is_taken_over() -> None:
+    """A bar of the same triangles, longer by a tenth, on the map of the first: with its creases and seams."""
+    first = fitted_with_creases("rounded bar", 30, 600).surface
+    mesh = mesh_of("rounded bar")
+    longer = mesh.with_vertices(mesh.vertices * [1, 1, 1.1])
+    words = [f"basis.size={first.basis.size}", "data.creases=30", "output.refine=1"]
+    found = pipeline.fit(longer, Config.load(overrides=words), REGISTRY, like=first)
+    np.testing.assert_array_equal(found.surface.triangulation.seam, first.triangulation.seam)
+    np.testing.assert_array_equal(found.surface.triangulation.sites, first.triangulation.sites)
+    assert off(found.surface, lambda x: from_bar(x / [1, 1, 1.1]))[0] < 1e-4
 
 
 def test_folds_beside_sharp_edges_are_told_by_their_own_side(monkeypatch: pytest.MonkeyPatch) -> None:
