@@ -55,8 +55,6 @@ def remeshed(surface: OrbifoldSurface, vertices: float, *, quads: bool = False, 
 
     Raises FitError where there are too few to tell the faces apart by their vertices.
     """
-    if quads and surface.triangulation.crease is not None:
-        raise FitError("quadrilaterals keep no creases so far; leave out --quads, or fit the surface without creases")
     count = (vertices + 5 * float(surface.orbifold.euler_characteristic)) / 6 if quads else vertices
     mesh = even_triangles(surface, count, seed)
     if not quads:

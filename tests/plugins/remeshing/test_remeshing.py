@@ -19,6 +19,7 @@ from orbiframe import FitError, Points, UsageError
 from orbiframe.functions import foot_points
 from orbiframe.meshes import require_closed_surface
 from orbiframe.meshes.bending import bending
+from orbiframe.meshes.sizes import vector_areas
 
 SHAPES = ["plate_genus2_coarse.off", "torus.off", "klein_bottle.off", "projective_plane.off", "cube.off"]
 
@@ -192,6 +193,16 @@ def test_more_vertices_than_the_refined_mesh_has_for_creases(creased):
         remeshed(creased, 100_000)
 
 
-def test_quadrilaterals_keep_no_creases(creased):
-    with pytest.raises(FitError, match="keep no creases so far; leave out --quads"):
-        remeshed(creased, 500, quads=True)
+def test_creases_are_sides_of_the_quadrilaterals(creased):
+    """Every quadrilateral lies in one plane of the plate, and their sharp sides are as long together as its edges."""
+    mesh, plate = remeshed(creased, 1500, quads=True), mesh_of("plate_genus2_coarse.off")
+    assert (mesh.face_sizes == 4).all()
+    corners = mesh.vertices[mesh.tail.reshape(-1, 4)]
+    thin = np.linalg.svd(corners - corners.mean(axis=1, keepdims=True), compute_uv=False)[:, 2]
+    assert thin.max() < 1e-3 * plate.diagonal
+    normal = vector_areas(mesh)
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    sharp = np.einsum("hi,hi->h", normal[mesh.face], normal[mesh.face[mesh.twin]]) < 0.5
+    edges = (plate.edge_lengths * (bending(plate).angle > np.pi / 4)).sum()
+    assert mesh.edge_lengths[sharp].sum() == pytest.approx(edges, rel=1e-4)
+    assert require_closed_surface(mesh).euler_characteristic == -2
