@@ -54,8 +54,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add(
         "--creases",
         metavar="ANGLE",
-        type=float,
-        help="edges that bend by ANGLE degrees or more stay sharp (data.creases)",
+        type=_angle,
+        help="edges that bend by ANGLE degrees or more stay sharp; 'marked': those that the file marks (data.creases)",
     )
     add_boundary(parser)
     add("--fast", action="store_true", help="one linear fit on one map (fitter.name=least-squares, data.lift=false)")
@@ -88,6 +88,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--quiet", action="store_true", help="print nothing but errors")
     add_repairs(parser)
     parser.set_defaults(run=run, wrong_use=parser.error)
+
+
+def _angle(word: str) -> float | str:
+    """An angle, or a word, of which the configuration knows one."""
+    try:
+        return float(word)
+    except ValueError:
+        return word
 
 
 def run(args: argparse.Namespace, registry: Registry) -> int:

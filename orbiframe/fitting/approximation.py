@@ -68,13 +68,14 @@ class Approximations:
         """The surface of so many functions; of more if they cannot follow the map and no number is asked for."""
         mapped = self.mapping.for_size(size)
         mapped = mapped if density is None else mapped.with_density(density.on(mapped.refinement))
-        mapped = self._creased(mapped, size)
+        mapped = self._creased(mapped, size, 0 if self._given_size or density else _LARGEST_SIZE)
         energy = girth(mapped.triangulation).energy
         basis = self._basis(mapped, size)
         needed = size_needed(basis, energy)
         if needed > basis.size and self._given_size is None:
             return self.of_size(max(needed, basis.size + 100), density)
-        meaning = meaning_of(self.mapping.own_facets, self.config.data.means, size, self.config.data.creases)
+        sharp = None if self.config.data.creases is None else self.mapping.sharp(self.mapping.own_facets)
+        meaning = meaning_of(self.mapping.own_facets, self.config.data.means, size, sharp)
         notes = () if needed <= basis.size else (too_few(basis.size, needed),)
         try:
             found = self._meant(mapped, basis, meaning, size)
@@ -92,7 +93,9 @@ class Approximations:
             basis = self._basis(mapped, size)
         samples, surface = self._surface(mapped, basis, meaning, self._fitter(), self.config)
         surface = self._moved(surface)
-        return Approximation(surface, mapped, samples, meaning, self.stages("error", accuracy_of, surface), 0.0, ())
+        arcs = samples if meaning.arcs(mapped.triangulation) else None
+        accuracy = self.stages("error", accuracy_of, surface, arcs)
+        return Approximation(surface, mapped, samples, meaning, accuracy, 0.0, ())
 
     def _stray(self, found: Approximation) -> float:
         """By how many of its sizes the surface leaves a facet, where the mesh may mean something less smooth."""
@@ -134,12 +137,12 @@ class Approximations:
         chi = self.mapping.surface_type.euler_characteristic
         return default_size(energy, len(self.mapping.triangles.vertices), chi)
 
-    def _creased(self, mapped: Mapped, size: int) -> Mapped:
+    def _creased(self, mapped: Mapped, size: int, most: int) -> Mapped:
         """The map with creases, if they are to stay."""
         if self.config.data.creases is None:
             return mapped
         unknowns = self.stages.registry.load("basis", self.config.basis.name).crease_unknowns  # type: ignore[attr-defined]
-        creased: Mapped = self.stages("creases", self.mapping.creased, mapped, size, unknowns)
+        creased: Mapped = self.stages("creases", self.mapping.creased, mapped, size, unknowns, most)
         return creased
 
     def _basis(self, mapped: Mapped, size: int) -> Basis:

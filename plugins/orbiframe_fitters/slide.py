@@ -39,6 +39,8 @@ _ALL_STEPS = 2
 _DIRECT = 200
 # How much a kink across a hair counts against a distance of what it would lift at the spacing of the functions.
 _KINK = 10.0
+# How much a jump of the slope within the surface counts against a kink, beside curved facets, and if all are flat.
+_SLIDE = 1e-5, 1e-7
 
 
 class _Fairness(NamedTuple):
@@ -69,6 +71,7 @@ class Slide:
         ]
         self.fairness = self._fairness(self.energy) if self.energy else []
         self.kinks, self.creased = Kinks.of(basis), samples.still is not None
+        self.flat = samples.still is not None and bool(samples.still.all())
         self.spacing = spacing(basis, samples)
         length = np.full(len(samples.weights), self.spacing) if samples.length is None else samples.length
         self.longest = [
@@ -209,12 +212,17 @@ class Slide:
         return 0.0 if self.creased else None
 
     def _smoothed(self, kinks: Kinks, coefficients: Floats) -> tuple[Floats, Floats]:
-        """For each point of a hair the six entries of the form of its kink, (n, 6), and its right side, (n, 3)."""
+        """For each point of a hair the six entries of the form of its kink, (n, 6), and its right side, (n, 3).
+
+        What jumps within the surface counts a little too: nothing else holds the parameters of planes beside corners.
+        """
         normal, kink = kinks.seen(coefficients)
-        size = np.linalg.norm(kinks.across @ coefficients, axis=1)
-        weight = _KINK * self.spacing**4 / np.maximum(size, np.finfo(float).tiny)
+        size = np.maximum(np.linalg.norm(kinks.across @ coefficients, axis=1), np.finfo(float).tiny)
+        weight, slide = _KINK * self.spacing**4 / size, _SLIDE[self.flat]
         form = np.stack([normal[:, a] * normal[:, b] for a, b in PAIRS], axis=1)
-        return (weight / size)[:, None] * form, -(weight * kink)[:, None] * normal
+        form[:, [0, 3, 5]] += slide
+        wanted = kink[:, None] * normal + slide * (kinks.jump @ coefficients) / size[:, None]
+        return (weight / size)[:, None] * form, -weight[:, None] * wanted
 
     def _pinched(self, before: Floats, after: Floats) -> bool:
         """Whether a smooth surface shrinks too much somewhere; facets may, where an edge becomes sharp."""
