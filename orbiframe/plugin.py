@@ -13,6 +13,7 @@ KINDS = (
     "group",
     "parametrizer",
     "optimizer",
+    "solver",
     "basis",
     "fitter",
     "reader",

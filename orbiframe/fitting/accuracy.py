@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from orbiframe.errors import FitError
 from orbiframe.functions.basis import DifferentiableBasis
-from orbiframe.functions.feet import foot_points, foot_step
+from orbiframe.functions.feet import feet_of, foot_step
 from orbiframe.functions.samples import Samples, places
+from orbiframe.functions.smooth_samples import at_samples
 from orbiframe.meshes.edge_paths import first_largest
 from orbiframe.meshes.nearest_points import NearestPoints
 from orbiframe.meshes.sizes import vector_areas
@@ -117,6 +118,14 @@ def _of_arcs(surface: OrbifoldSurface, samples: Samples) -> Distances:
     return _distances(away, counted.shares, counted.values)
 
 
+def stray_of(surface: OrbifoldSurface, accuracy: Accuracy) -> float:
+    """The largest distance of the mesh from the surface, in sizes of the facets: the root of twice the area of each."""
+    refinement = surface.refinement
+    size = np.sqrt(2 * np.linalg.norm(vector_areas(refinement.facets), axis=1))
+    there = at_samples(surface.triangulation, refinement, size)[: len(accuracy.at_vertices)]
+    return float((accuracy.at_vertices / np.maximum(there, np.finfo(float).tiny)).max())
+
+
 def _seen(surface: OrbifoldSurface, samples: Samples, given: int) -> tuple[Floats, Floats, Floats]:
     """The points of a surface over samples, the distances of the samples to it, and the normals at their feet.
 
@@ -141,7 +150,7 @@ def _seen(surface: OrbifoldSurface, samples: Samples, given: int) -> tuple[Float
     far = (np.linalg.norm(way, axis=1) > _NEAR * spacing) | (away >= np.quantile(away, 1 - _WORST))
     chosen = np.append(np.arange(given), np.flatnonzero(far))
     start = samples.take(chosen)
-    away[chosen] = foot_points(basis, coefficients, start.points, start.values, spacing)[1]
+    away[chosen] = feet_of(basis, coefficients, start.points, start.values, spacing, jets=jets[:, chosen]).distance
     return jets[0], away, normals
 
 

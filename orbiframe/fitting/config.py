@@ -89,6 +89,7 @@ STEPS = {
     "marking": ("marker", "method", "auto"),
     "map": ("parametrizer", "method", "auto"),
     "shape": ("optimizer", "method", "none"),
+    "solver": ("solver", "name", "auto"),
     "basis": ("basis", "name", "gaussian"),
     "fitter": ("fitter", "name", "sliding"),
 }
@@ -104,7 +105,9 @@ class Config:
     mesh: the reader, "auto" by the file suffix; geometry: the plane X, "auto" by the Euler characteristic; group:
     "mesh" takes the group from the mesh; marking: cuts the mesh open for a named group; map: "auto" takes the
     parametrizer that fits the geometry and the group; shape: changes the map so that faces become regular, "none"
-    leaves it as it is; basis; fitter. boundary: how a mesh with a boundary is closed for the map, "error" if it is not.
+    leaves it as it is; solver: what solves the equations of
+    maps, "auto" what the parametrizer does; basis; fitter. boundary: how a mesh with a boundary is closed for the map,
+    "error" if it is not.
     like: a saved surface whose map is taken over. places: where each "table.key" was written, for error messages.
     NAMES: of all tables.
 
@@ -200,6 +203,11 @@ class Config:
     def shape(self) -> Step:
         """The optimizer."""
         return self.steps["shape"]
+
+    @property
+    def solver(self) -> Step:
+        """What solves the equations of maps."""
+        return self.steps["solver"]
 
     @property
     def basis(self) -> Step:

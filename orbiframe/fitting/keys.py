@@ -24,6 +24,7 @@ TABLE_MEANINGS = {
     "map": "The map from the mesh to X/H.",
     "shape": "Only where an optimizer is named: the map is changed so that faces become regular polygons in X/H, "
     "as far as the surface allows.",
+    "solver": "What solves the sparse equations of the map.",
     "data": "What the mesh means.",
     "basis": "The functions.",
     "fitter": "How their coefficients are found.",
@@ -38,6 +39,8 @@ SELECTOR_MEANINGS = {
     "map": "name of a parametrizer; auto takes sphere for χ > 0 and harmonic for χ ≤ 0, or equivariant if the "
     "group has a name",
     "shape": "name of an optimizer, such as regular-faces; none: the map stays as it is",
+    "solver": "name of a solver; auto: METIS orders the edges of a mesh once for all its equations, SuperLU factors "
+    "them",
     "basis": "name of a basis",
     "fitter": "name of a fitter: sliding, least-squares for the linear fit that sliding begins with, or "
     "smoothing, whose fairing cross-validation finds",

@@ -41,6 +41,7 @@ from orbiframe.plugin import DEFAULT_MARKER
 from orbiframe.triangulations.beyond import density_beyond
 from orbiframe.triangulations.face_shapes import FaceShapes, face_shapes
 from orbiframe.triangulations.triangulation import Triangulation
+from orbiframe.workers.solving import solving_by
 
 PARAMETRIZER = {"s2": "sphere", "e2": "harmonic", "h2": "harmonic"}
 NAMED_PARAMETRIZER = {"s2": "sphere", "e2": "equivariant", "h2": "equivariant"}
@@ -224,12 +225,20 @@ class Mapping:
             lambda: self._key("map", name, parametrizer, mesh_key(mesh)),
             mesh,
             geometry,
-            lambda: made(registry, "parametrizer", name, parametrizer(mesh, geometry, group), Triangulation),
+            lambda: made(
+                registry, "parametrizer", name, self._solved(parametrizer, mesh, geometry, group), Triangulation
+            ),
         )
         remedy = "map.method = 'auto'" + ("" if group is None else " or group.method = 'mesh'")
         _require_embedding(triangulation, f"the map of '{name}'", remedy)
         first = self._bounded(refinement, triangulation)
         return Mapped(refinement, first, self._bounded(refinement, self._shaped(refinement, first)))
+
+    def _solved(self, parametrizer: Callable[..., object], *given: object) -> object:
+        """What a parametrizer makes, with the solver that is chosen."""
+        step = self.config.solver
+        with solving_by(None if step.open else self.config.component("solver", self.stages.registry)):
+            return parametrizer(*given)
 
     def _bounded(self, refinement: Bisection, triangulation: Triangulation) -> Triangulation:
         """The map with the triangles marked that belong to the mesh, and with fewer functions on the others."""
@@ -273,7 +282,8 @@ class Mapping:
 
     def _key(self, table: str, name: str, maker: Callable[..., Triangulation], *content: str) -> str:
         """The content key of a map: the mesh, the component with its options and source, the group."""
-        steps = {other: self.config.steps[other] for other in (table, "geometry", "group", "marking")}
+        solver = () if self.config.solver.open else ("solver",)
+        steps = {other: self.config.steps[other] for other in (table, "geometry", "group", "marking", *solver)}
         chosen = {other: (step.name, dict(step.options)) for other, step in steps.items()}
         return content_key({"component": (table, name), "steps": chosen, "source": source_key(maker), "of": content})
 

@@ -22,6 +22,10 @@ Bools = NDArray[np.bool_]
 LARGE = 2**20
 
 
+# What follows from the faces alone, wherever the vertices are.
+_OF_FACES = ("face_sizes", "face", "next", "head", "representative", "edge", "is_triangular", "triangles", "sheets")
+
+
 # The units that coordinates may have.
 UNITS = ("millimetre", "metre")
 
@@ -172,6 +176,13 @@ class Polyhedron:
         return self.tail.reshape(-1, 3)
 
     @cached_property
+    def sheets(self) -> tuple[int, int, Ints]:
+        """Components of the faces, and of their two-sheeted orientation cover, with its labels (2F,) of f and F + f."""
+        from orbiframe.meshes.orientation import face_sheets
+
+        return face_sheets(self)
+
+    @cached_property
     def edge_lengths(self) -> Floats:
         """Length in space of every halfedge, (H,)."""
         return np.asarray(np.linalg.norm(self.vertices[self.head] - self.vertices[self.tail], axis=1))
@@ -188,7 +199,10 @@ class Polyhedron:
 
     def with_vertices(self, vertices: Floats, normals: Floats | None = None) -> Polyhedron:
         """The same faces with other vertices (and normals); all but the normals of corners is kept."""
-        return replace(self, vertices=np.asarray(vertices, dtype=np.float64), normals=normals, corner_normals=None)
+        found = replace(self, vertices=np.asarray(vertices, dtype=np.float64), normals=normals, corner_normals=None)
+        # What is known of the faces is known of those too.
+        found.__dict__.update({name: self.__dict__[name] for name in _OF_FACES if name in self.__dict__})
+        return found
 
     def to_trimesh(self) -> Any:
         """A trimesh.Trimesh of triangles, with the normals if there are some; vertices keep their numbers."""

@@ -10,18 +10,18 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from orbiframe import DifferentiableBasis, Points, Samples
-from orbiframe.functions import foot_points, foot_step, moved
+from orbiframe.functions import feet_of, foot_step, moved
+from orbiframe_fitters.chunks import chunks
+from orbiframe_fitters.coupled import KIND, coupled, nearly_solved
 from orbiframe_fitters.energy import Energy, energy_of, spacing
 from orbiframe_fitters.gram import Gram
 from orbiframe_fitters.kinks import Kinks
-from orbiframe_fitters.least_squares import chunks
-from orbiframe_fitters.normal_equations import nearly_solved, solved
+from orbiframe_fitters.normal_equations import solved
 from orbiframe_fitters.sliding_data import PAIRS, Feet, Schedule, away_from, linearised, products
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-_KIND = np.array([[0, 1, 2], [1, 3, 4], [2, 4, 5]])
 # A foot moves at most so many lengths of fairness in one step, and the surface is stretched at most so much in fairing.
 _LONGEST_STEP = 0.3
 _MOST_STRETCH = 30.0
@@ -31,6 +31,8 @@ _GAIN = 0.97
 _LEAST_STEPS = 4
 # A smooth surface is shrunk to at least so much in one step at every datum: beyond, a limb is being pinched off.
 _LEAST_SHARE = 0.35
+# Fairness grows by such a factor where it would, up to this one.
+_STIFFER, _STIFFEST = 10.0, 1e4
 # So many steps of Newton's lead data that were left out so far to their feet.
 _ALL_STEPS = 2
 # Up to so many functions the equations of a step are factored as a whole; of more, iteration takes less time.
@@ -50,11 +52,20 @@ class _Fairness(NamedTuple):
 
 
 class Slide:
-    """The data of a sliding fit, chunk by chunk, and its steps."""
+    """The data of a sliding fit, chunk by chunk, and its steps.
 
-    def __init__(self, basis: DifferentiableBasis, samples: Samples, schedules: tuple[Schedule, ...]) -> None:
-        self.basis, self.samples, self.schedules = basis, samples, schedules
-        self.energy = energy_of(basis, samples) if any(schedule.fairing for schedule in schedules) else None
+    fair: the samples over which fairness is summed up, by default those of the data.
+    """
+
+    def __init__(
+        self,
+        basis: DifferentiableBasis,
+        samples: Samples,
+        schedules: tuple[Schedule, ...],
+        fair: Samples | None = None,
+    ) -> None:
+        self.basis, self.fair, self.schedules = basis, samples if fair is None else fair, schedules
+        self.energy = energy_of(basis, self.fair) if any(schedule.fairing for schedule in schedules) else None
         self.data = [
             part.take(np.flatnonzero(part.weights > 0)) for part, _ in chunks(samples) if (part.weights > 0).any()
         ]
@@ -71,17 +82,24 @@ class Slide:
 
     def _fairness(self, energy: Energy) -> list[_Fairness]:
         found = []
-        for part, chosen in chunks(self.samples):
+        for part, chosen in chunks(self.fair):
             jets = self.basis.jet_matrices(part.points, energy.order)
             found.append(_Fairness(chosen, energy.rows(jets), jets[1:3]))
         return found
 
     def from_start(self, coefficients: Floats, steps: int) -> Floats:
-        """The coefficients after at most so many steps; a step that leads away is halved, then refused."""
+        """The coefficients after at most so many steps; a step that leads away is halved, then refused.
+
+        A step that would pinch off something asks for more fairness, for all steps to come.
+        """
         feet = self._slid([self._feet(part.points, part.values, coefficients) for part in self.data], coefficients)
-        distance = self._distance(feet)
+        distance, stiffer = self._distance(feet), 1.0
         for step in range(steps):
-            change = self._change(feet, coefficients, self.schedules[min(step, len(self.schedules) - 1)])
+            schedule = self.schedules[min(step, len(self.schedules) - 1)]
+            change = self._change(feet, coefficients, schedule.stiffer(stiffer))
+            while self._pinched(coefficients, coefficients + change) and stiffer < _STIFFEST:
+                stiffer *= _STIFFER
+                change = self._change(feet, coefficients, schedule.stiffer(stiffer))
             before = distance
             for share in (1.0, 0.5, 0.25):
                 trial = coefficients + share * change
@@ -103,8 +121,7 @@ class Slide:
         gram, right = self._empty()
         longest = _LONGEST_STEP * self.spacing
         for part, _ in chunks(samples.take(np.flatnonzero(samples.weights > 0))):
-            points, _ = foot_points(self.basis, coefficients, part.points, part.values, longest, _ALL_STEPS)
-            jets = self.basis.jets(points, coefficients, 2)
+            points, _, jets = feet_of(self.basis, coefficients, part.points, part.values, longest, _ALL_STEPS)
             feet = Feet(points, self.basis.jet_matrices(points, 0), jets, part.values - jets[0])
             self._enter(gram, right, feet, part, schedule)
         trial = coefficients + self._solved(gram, right, coefficients, schedule)
@@ -179,14 +196,14 @@ class Slide:
             weights, wanted = self._smoothed(self.kinks, coefficients)
             gram.add(self.kinks.jump, weights)
             right += self.kinks.jump.T @ wanted
-        blocks: list[Any] = list(gram.matrices())
+        stiff: Any = csr_array((self.basis.size, self.basis.size))
         if self.energy is not None and schedule.fairing:
-            stiff: Any = schedule.fairing * self._stiffness(coefficients, self.energy)
+            stiff = schedule.fairing * self._stiffness(coefficients, self.energy)
             right -= stiff @ coefficients
-            blocks = [block + stiff if kind in (0, 3, 5) else block for kind, block in enumerate(blocks)]
-        rows = [[blocks[kind] for kind in line] for line in _KIND]
         if self.basis.size > _DIRECT and not self.creased:
-            return nearly_solved(rows, right)
+            return nearly_solved(coupled(gram, stiff), right)
+        blocks = [block + stiff if kind in (0, 3, 5) else block for kind, block in enumerate(gram.matrices())]
+        rows = [[blocks[kind] for kind in line] for line in KIND]
         return solved(_joined(rows), right.T.reshape(-1, 1)).reshape(3, -1).T
 
     @property
@@ -219,7 +236,7 @@ class Slide:
         gram = Gram(self.basis.size, most=self._room)
         for part in self.fairness:
             chosen, rows, _ = part
-            stretch = np.minimum(1 / _elements(part, coefficients), _MOST_STRETCH * self.samples.stretch[chosen])
+            stretch = np.minimum(1 / _elements(part, coefficients), _MOST_STRETCH * self.fair.stretch[chosen])
             for row in rows:
                 gram.add(row, energy.weights(chosen, stretch))
         return gram.matrices()[0]
