@@ -172,8 +172,8 @@ def table(found: list[Found]) -> Iterator[str]:
 def page(found: list[Found]) -> str:
     """The page of the docs."""
     return (
-        "# Speed, beside others\n\nProcessor time of one core, the least of three trials that take turns, with all code "
-        "loaded;\nmade by `python benchmarks/claims.py --page`, which fails where a ratio is less than what is "
+        "# Speed, beside others\n\nProcessor time of one core, the least of three trials that take turns, with all "
+        "code loaded;\nmade by `python benchmarks/claims.py --page`, which fails where a ratio is less than what is "
         "claimed.\n\n" + "\n".join(table(found)) + "\n"
     )
 
