@@ -5,8 +5,8 @@
 FROM python:3.13-slim AS built
 COPY . /source
 RUN python -m venv /opt/orbiframe \
-    && /opt/orbiframe/bin/pip install --no-cache-dir --constraint /source/constraints.txt /source \
-    && /opt/orbiframe/bin/orbiframe warm-up
+    && /opt/orbiframe/bin/pip install --no-cache-dir --constraint /source/constraints.txt /source
+RUN /opt/orbiframe/bin/orbiframe warm-up
 
 FROM python:3.13-slim
 COPY --from=built /opt/orbiframe /opt/orbiframe

@@ -65,3 +65,23 @@ def asked_for(driver: Any) -> list[str]:
     messages = [json.loads(entry["message"])["message"] for entry in driver.get_log("performance")]
     found = [each["params"]["request"]["url"] for each in messages if each["method"] == "Network.requestWillBeSent"]
     return [url for url in found if not url.startswith("chrome:")]
+
+
+def drawn(driver) -> None:
+    """Wait until the panes show what they have, at rest: with all their pixels."""
+    script = """const done = arguments[0], sharp = () => [...document.querySelectorAll(".pane canvas")].every(
+          (c) => c.width + 1 >= c.clientWidth * Math.min(devicePixelRatio, 2));
+        const look = () => requestAnimationFrame(() => requestAnimationFrame(() => sharp() ? done() : look()));
+        look();"""
+    driver.execute_async_script(script)
+
+
+def picture(driver, pane: str = "space"):
+    """The pixels of a pane, (h, w, 3)."""
+    import io
+
+    from matplotlib.image import imread
+
+    drawn(driver)
+    element = driver.find_element("css selector", f"#{pane} canvas")
+    return imread(io.BytesIO(element.screenshot_as_png))[..., :3]

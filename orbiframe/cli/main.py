@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 import traceback
 import warnings
@@ -19,9 +18,9 @@ from orbiframe.cli.progress import MODES, Progress, compilation_told
 from orbiframe.cli.speech import any_letter, fill_closed_streams, said_to_programs, say, silence
 from orbiframe.components.registry import Registry
 from orbiframe.errors import OrbiframeError, PluginError, UsageError
+from orbiframe.workers.linear_algebra import one_thread_by_default
 
 INTERRUPTED = 130
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 EPILOG = (
     "exit status: 0 done; 1 the data or the mathematics do not allow it; 2 wrong usage or configuration; "
     "3 a fit is done, and its report warns"
@@ -36,7 +35,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     `--debug`.
     """
     arguments = sys.argv[1:] if argv is None else list(argv)
-    _fix_threads()
+    one_thread_by_default()
     fill_closed_streams()
     with warnings.catch_warnings(), any_letter(), said_to_programs(_mode(arguments) == "json"):
         debug = "--debug" in arguments
@@ -54,15 +53,6 @@ def _mode(arguments: Sequence[str]) -> str:
     """How progress is to be told, as far as the words say it: with JSON wrong arguments are told in it too."""
     joined = [word.partition("=")[2] for word in arguments if word.startswith("--progress=")]
     return joined[-1] if joined else dict(pairwise(arguments)).get("--progress", "auto")
-
-
-def _fix_threads() -> None:
-    """One thread for linear algebra unless the user says otherwise, before numpy is imported.
-
-    The last digits of a result depend on the number of threads, and small blocks in sparse factors only wait for them.
-    """
-    for name in THREADS:
-        os.environ.setdefault(name, "1")
 
 
 def _run(arguments: list[str]) -> int:

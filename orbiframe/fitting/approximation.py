@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from orbiframe.components.options import options_of, place_of
 from orbiframe.errors import ConfigError, FitError
-from orbiframe.fitting.accuracy import Accuracy, accuracy_of
+from orbiframe.fitting.accuracy import Accuracy, accuracy_of, stray_of
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.fixed_points import with_fixed
 from orbiframe.fitting.made import made, made_coefficients
 from orbiframe.fitting.mapping import Mapped, Mapping
-from orbiframe.fitting.meaning import Meaning, facets_show, meaning_of
+from orbiframe.fitting.meaning import FACETS, Meaning, facets_show, meaning_of
 from orbiframe.fitting.size import LEAST_SIZE, default_size, size_needed
 from orbiframe.fitting.stages import Stages
 from orbiframe.functions.basis import Basis
@@ -31,6 +31,8 @@ Floats = NDArray[np.float64]
 _FIRST_SIZE, _LARGEST_SIZE = 500, 16_000
 _GROWTH = (1.3, 2.0)
 _FIRST_FITTER = "least-squares"
+# No smooth surface through the corners of a facet leaves it by more than this share of its size: a ball has 0.5.
+_MOST_STRAY = 0.75
 # How the density of functions follows the error: its root, between these shares of the mean, averaged so often.
 _LEAST_ERROR, _MOST_ERROR, _ROUNDS = 0.2, 8.0, 8
 
@@ -66,25 +68,41 @@ class Approximations:
         """The surface of so many functions; of more if they cannot follow the map and no number is asked for."""
         mapped = self.mapping.for_size(size)
         mapped = mapped if density is None else mapped.with_density(density.on(mapped.refinement))
-        mapped = self._creased(mapped, size)
+        mapped = self._creased(mapped, size, 0 if self._given_size or density else _LARGEST_SIZE)
         energy = girth(mapped.triangulation).energy
         basis = self._basis(mapped, size)
         needed = size_needed(basis, energy)
         if needed > basis.size and self._given_size is None:
             return self.of_size(max(needed, basis.size + 100), density)
-        meaning = meaning_of(self.mapping.own_facets, self.config.data.means, size, self.config.data.creases)
+        sharp = None if self.config.data.creases is None else self.mapping.sharp(self.mapping.own_facets)
+        meaning = meaning_of(self.mapping.own_facets, self.config.data.means, size, sharp)
         notes = () if needed <= basis.size else (too_few(basis.size, needed),)
         try:
-            if self._lifts(meaning, size):
-                mapped = self._lifted(mapped, basis, meaning)
-                basis = self._basis(mapped, size)
-            fitter = self._fitter()
-            samples, surface = self._surface(mapped, basis, meaning, fitter, self.config)
-            surface = self._moved(surface)
-            accuracy = self.stages("error", accuracy_of, surface)
+            found = self._meant(mapped, basis, meaning, size)
+            while (stray := self._stray(found)) > _MOST_STRAY:
+                vertices = len(self.mapping.triangles.vertices)
+                found = self._meant(mapped, basis, found.meaning.less_smooth(vertices, size, stray), size)
         except FitError as error:
             raise FitError("; ".join((str(error), *notes))) from error
-        return Approximation(surface, mapped, samples, meaning, accuracy, energy, notes)
+        return found._replace(energy=energy, notes=notes)
+
+    def _meant(self, mapped: Mapped, basis: Basis, meaning: Meaning, size: int) -> Approximation:
+        """The surface of a mesh with this meaning."""
+        if self._lifts(meaning, size):
+            mapped = self._lifted(mapped, basis, meaning)
+            basis = self._basis(mapped, size)
+        samples, surface = self._surface(mapped, basis, meaning, self._fitter(), self.config)
+        surface = self._moved(surface)
+        arcs = samples if meaning.arcs(mapped.triangulation) else None
+        accuracy = self.stages("error", accuracy_of, surface, arcs)
+        return Approximation(surface, mapped, samples, meaning, accuracy, 0.0, ())
+
+    def _stray(self, found: Approximation) -> float:
+        """By how many of its sizes the surface leaves a facet, where the mesh may mean something less smooth."""
+        data = self.config.data
+        if data.means != "auto" or data.creases is not None or data.fixed or self.config.output.moved:
+            return 0.0
+        return 0.0 if found.meaning.name == FACETS else stray_of(found.surface, found.accuracy)
 
     def _lifts(self, meaning: Meaning, size: int) -> bool:
         """Whether the mesh is mapped again without its facets: where it is smooth, and so coarse that they show."""
@@ -119,12 +137,12 @@ class Approximations:
         chi = self.mapping.surface_type.euler_characteristic
         return default_size(energy, len(self.mapping.triangles.vertices), chi)
 
-    def _creased(self, mapped: Mapped, size: int) -> Mapped:
+    def _creased(self, mapped: Mapped, size: int, most: int) -> Mapped:
         """The map with creases, if they are to stay."""
         if self.config.data.creases is None:
             return mapped
         unknowns = self.stages.registry.load("basis", self.config.basis.name).crease_unknowns  # type: ignore[attr-defined]
-        creased: Mapped = self.stages("creases", self.mapping.creased, mapped, size, unknowns)
+        creased: Mapped = self.stages("creases", self.mapping.creased, mapped, size, unknowns, most)
         return creased
 
     def _basis(self, mapped: Mapped, size: int) -> Basis:

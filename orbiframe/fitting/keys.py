@@ -64,7 +64,8 @@ _RESULT_MEANINGS = {
     "data.noise": "root mean square error of each coordinate of the vertices of a smooth mesh, relative to the "
     "diagonal of the bounding box; if not given, the fairing is found from the vertices by cross-"
     "validation",
-    "data.creases": "edges of the mesh that bend by so many degrees or more stay sharp; if not given, the surface is "
+    "data.creases": "edges of the mesh that bend by so many degrees or more stay sharp, or 'marked': those that its "
+    "file marks; if not given, the surface is "
     "smooth everywhere",
     "data.fixed": "points that the surface passes through exactly: lists of x, y, z, or of x, y, z and a normal nx, "
     "ny, nz that it has there, in lengths of the mesh; each at the nearest point of the mesh",

@@ -5,13 +5,15 @@ from __future__ import annotations
 from typing import Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from orbiframe.functions.border_samples import with_border
 from orbiframe.functions.samples import Samples, coordinate_samples
 from orbiframe.functions.samples_of_sides import crease_samples
 from orbiframe.functions.smooth_samples import inside_facets, semi_smooth_samples, vertex_samples
-from orbiframe.meshes.bending import bending, sharp_edges
+from orbiframe.meshes.bending import bending
 from orbiframe.meshes.bisection import Bisection
+from orbiframe.meshes.even_bends import even_share
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
 from orbiframe.triangulations.triangulation import Triangulation
@@ -23,8 +25,9 @@ _CURVED: dict[str, Literal["none", "bent", "all"]] = {FACETS: "none", SEMI_SMOOT
 
 MEANINGS = ("auto", SMOOTH, SEMI_SMOOTH, FACETS)
 
-# Up to this share of its bending in sharp edges a mesh is taken for smooth, from the other one on for its facets.
-_SMOOTH, _SHARP = 0.20, 0.45
+# Up to this share of its bending in sharp edges a mesh is taken for smooth, from the other one on for its facets; up to
+# the third one where bends between flats of even width are not counted as sharp.
+_SMOOTH, _SHARP, _EVEN = 0.20, 0.48, 0.02
 # Beside creases nothing bends if no more than this share does.
 _FLAT = 1e-6
 # Facets no longer than this share of the distance of functions leave no mark in a fit.
@@ -44,6 +47,18 @@ class Meaning(NamedTuple):
     def smooth(self) -> bool:
         """Whether the vertices alone are the truth."""
         return self.name == SMOOTH
+
+    def less_smooth(self, vertices: int, size: int, stray: float) -> Meaning:
+        """What the mesh means where a surface of this meaning leaves a facet by so many of its sizes."""
+        name = SEMI_SMOOTH if self.smooth and vertices <= size else FACETS
+        return self._replace(
+            name=name,
+            reason=f"{self.reason}, but as {self.name} the surface leaves a facet by {stray:.1f} times its size",
+        )
+
+    def arcs(self, triangulation: Triangulation) -> bool:
+        """Whether bent facets stand for arcs over them, and flat ones for themselves."""
+        return triangulation.crease is not None and self.name == SEMI_SMOOTH
 
     def samples(
         self, triangulation: Triangulation, refinement: Bisection, size: int, noise: float | None = None
@@ -68,11 +83,11 @@ class Meaning(NamedTuple):
         return semi_smooth_samples(triangulation, refinement, spacing)
 
 
-def meaning_of(mesh: Polyhedron, asked: str, size: int, creases: float | None = None) -> Meaning:
+def meaning_of(mesh: Polyhedron, asked: str, size: int, creases: NDArray[np.bool_] | None = None) -> Meaning:
     """What a triangle mesh stands for, as asked or found from the bends of its edges.
 
     size: the number of functions; where it is less than that of the vertices, those say where the facets are; creases:
-    from how many degrees on edges stay sharp: then what bends less is curved.
+    (H,), the edges that stay sharp: then what bends at others is curved.
     """
     bends = bending(mesh)
     share = bends.share
@@ -85,6 +100,8 @@ def meaning_of(mesh: Polyhedron, asked: str, size: int, creases: float | None = 
     percent = f"{100 * share:.0f} % of its bending lies in edges of more than 40°"
     if share <= _SMOOTH:
         return Meaning(SMOOTH, share, percent)
+    if (even := even_share(mesh)) <= _EVEN:
+        return Meaning(SMOOTH, share, f"{percent}, but no more than {100 * even:.0f} % between flats of uneven width")
     if share >= _SHARP:
         return Meaning(FACETS, share, percent)
     if len(mesh.vertices) > size:
@@ -99,9 +116,9 @@ def facets_show(mesh: Polyhedron, size: int) -> bool:
     return float(square @ square) > _SEEN**2 * area / size * float(square.sum())
 
 
-def _beside_creases(mesh: Polyhedron, share: float, creases: float) -> Meaning:
+def _beside_creases(mesh: Polyhedron, share: float, creases: NDArray[np.bool_]) -> Meaning:
     """Facets where nothing bends but creases; otherwise what bends is curved, and what does not is flat."""
     amount = mesh.edge_lengths * bending(mesh).angle
-    rest = float(amount[~sharp_edges(mesh, creases)].sum() / max(amount.sum(), 1e-300))
-    reason = f"{100 * (1 - rest):.0f} % of its bending lies in creases of {creases:g}° or more"
+    rest = float(amount[~creases].sum() / max(amount.sum(), 1e-300))
+    reason = f"{100 * (1 - rest):.0f} % of its bending lies in creases"
     return Meaning(SEMI_SMOOTH if rest > _FLAT else FACETS, share, reason)

@@ -35,6 +35,7 @@ from orbiframe.meshes.surface_type import without_unused_vertices
 from orbiframe.meshes.told_by_ends import require_told_by_ends
 from orbiframe.surfaces.surface import OrbifoldSurface
 from orbiframe.surfaces.textures import texture_coordinates
+from orbiframe.workers.linear_algebra import one_thread
 
 _OUTPUT_FACES = 40_000
 
@@ -98,7 +99,7 @@ def fit(
     file = None if like is None or known is not None else str(like)
     config = configured(config, settings | {"like": file})
     registry = registry_for(config) if registry is None else registry
-    with told(progress) as heard:
+    with told(progress) as heard, one_thread():
         return _fitted(mesh, config, Stages(registry, heard, maps=maps), share, known)
 
 

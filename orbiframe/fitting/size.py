@@ -7,7 +7,7 @@ from orbiframe.functions.basis import Basis
 LEAST_SIZE = 1000
 _PER_HANDLE = 12
 # A function sees the scale of the map change by no more than it can follow if there are so many sites per unit energy.
-_SITES_PER_ENERGY = 1 / 3
+_SITES_PER_ENERGY = 2 / 3
 _FUNCTIONS_PER_ENERGY = 2.5
 _VERTICES_PER_FUNCTION, _MOST = 2.0, 2000
 

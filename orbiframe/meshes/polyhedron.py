@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from orbiframe.errors import TopologyError
+from orbiframe.meshes.marked_edges import MarkedEdges
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -42,7 +43,8 @@ class Polyhedron:
     (H,); twin is -1 where an edge lies in one face only, or in three or more. Optional, as far as a file has them:
     normals (V, 3), colors (V, 3 or 4) and face_colors (F, 3 or 4), colours from 0 to 1; unit, that of the coordinates:
     "millimetre" or "metre"; corner_normals (H, 3), of every corner of every face, where they are not those of the
-    vertices: beside creases; corner_uv (H, 2), texture coordinates of every corner of every face.
+    vertices: beside creases; corner_uv (H, 2), texture coordinates of every corner of every face; marked, the edges
+    that a file says are sharp.
 
     >>> import numpy as np
     >>> from orbiframe import Polyhedron
@@ -65,6 +67,7 @@ class Polyhedron:
     unit: str | None = None
     corner_normals: Floats | None = None
     corner_uv: Floats | None = None
+    marked: MarkedEdges | None = None
 
     @classmethod
     def from_corners(

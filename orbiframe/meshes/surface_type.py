@@ -71,8 +71,9 @@ def without_unused_vertices(polyhedron: Polyhedron) -> Polyhedron:
         return polyhedron
     number = np.cumsum(used) - 1
     normals, colors = (None if a is None else a[used] for a in (polyhedron.normals, polyhedron.colors))
-    tail = number[polyhedron.tail]
-    return replace(polyhedron, vertices=polyhedron.vertices[used], tail=tail, normals=normals, colors=colors)
+    marked = None if polyhedron.marked is None else polyhedron.marked.renumbered(np.where(used, number, -1))
+    found = replace(polyhedron, vertices=polyhedron.vertices[used], tail=number[polyhedron.tail], marked=marked)
+    return replace(found, normals=normals, colors=colors)
 
 
 def _used_vertices(polyhedron: Polyhedron) -> Bools:

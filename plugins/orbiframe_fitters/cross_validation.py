@@ -15,17 +15,22 @@ Floats = NDArray[np.float64]
 
 _LADDER = 10 ** np.arange(0, 8, 0.5)
 _PROBES = 12
-_GAIN = 0.9
+_GAIN = 0.92
 
 
 class Trial(NamedTuple):
-    """Data rows, sparse (n, size), weights (n,) and values (n, d), with their Gram matrix and that of the energy."""
+    """Data rows, sparse (n, size), weights (n,) and values (n, d), with their Gram matrix and that of the energy.
+
+    normals: (n, 3), of the surface where values are points of it: then only what residuals have along normals is taken
+    for noise, because along the surface they are errors of the parameters, which the points need not have.
+    """
 
     rows: csr_array
     weights: Floats
     values: Floats
     gram: Any
     stiff: Any
+    normals: Floats | None = None
 
     def fairing(self, least: float, noise: float | None) -> float:
         """The fairing, at least `least`, for data with this noise (rms of one coordinate), or by cross-validation.
@@ -61,9 +66,15 @@ class Trial(NamedTuple):
         except FitError:
             return np.inf, 1.0
         split, share = self.values.shape[1], self.weights / self.weights.sum()
-        residual = (self.values - self.rows @ found[:, :split]) ** 2
+        residual = self._counted(self.values - self.rows @ found[:, :split])
         trace = np.vdot(drawn.signs, found[:, split:]) / _PROBES
-        return float(np.sqrt(share @ residual.mean(axis=1))), float(1 - trace / len(self.weights))
+        return float(np.sqrt(share @ residual)), float(1 - trace / len(self.weights))
+
+    def _counted(self, residual: Floats) -> Floats:
+        """The squares of what residuals (n, d) count, by coordinate or along normals, (n,)."""
+        if self.normals is None:
+            return np.asarray((residual**2).mean(axis=1))
+        return np.asarray(np.einsum("ni,ni->n", residual, self.normals) ** 2)
 
 
 class _Drawn(NamedTuple):

@@ -120,9 +120,9 @@ def equations(basis: Basis, samples: Samples, fairing: float | None, fair: Sampl
     bend: Any = stiff.matrices()[0]
     amount = FAIRING[energy.order] if fairing is None else fairing
     if fairing is None and energy.order == 3:
-        trial = Trial(
-            csr_array(scipy.sparse.vstack(all_rows)), np.concatenate(all_weights), np.concatenate(values), matrix, bend
-        )
+        rows, data = csr_array(scipy.sparse.vstack(all_rows)), (np.concatenate(all_weights), np.concatenate(values))
+        normals = _normals(basis, samples, order, solved(matrix + amount * bend, right))
+        trial = Trial(rows, *data, matrix, bend, normals)
         amount = trial.fairing(amount, samples.noise)
     return Equations(matrix + amount * bend, right, amount, *kept)
 
@@ -133,6 +133,16 @@ def _add_energy(
     """Add what some samples say of an energy, if there is one."""
     for rows in energy.rows(jets) if energy else ():
         stiff.add(rows, energy.weights(chosen, part.stretch))  # type: ignore[union-attr]
+
+
+def _normals(basis: Basis, samples: Samples, order: list[NDArray[np.intp]], coefficients: Floats) -> Floats | None:
+    """The normals (n, 3) of a surface at samples; None where values are no points in space."""
+    if coefficients.shape[1] != 3:
+        return None
+    assert isinstance(basis, DifferentiableBasis)
+    jets = (basis.jets(samples.take(part).points, coefficients, 1) for part in order)
+    cross = np.concatenate([np.cross(jet[1], jet[2]) for jet in jets])
+    return np.asarray(cross / np.maximum(np.linalg.norm(cross, axis=1, keepdims=True), np.finfo(float).tiny))
 
 
 def require_not_negative(fitter: str, **options: float | None) -> None:

@@ -31,12 +31,16 @@ _GAIN = 0.97
 _LEAST_STEPS = 4
 # A smooth surface is shrunk to at least so much in one step at every datum: beyond, a limb is being pinched off.
 _LEAST_SHARE = 0.35
+# Fairness grows by such a factor where it would, up to this one.
+_STIFFER, _STIFFEST = 10.0, 1e4
 # So many steps of Newton's lead data that were left out so far to their feet.
 _ALL_STEPS = 2
 # Up to so many functions the equations of a step are factored as a whole; of more, iteration takes less time.
 _DIRECT = 200
 # How much a kink across a hair counts against a distance of what it would lift at the spacing of the functions.
 _KINK = 10.0
+# How much a jump of the slope within the surface counts against a kink, beside curved facets, and if all are flat.
+_SLIDE = 1e-5, 1e-7
 
 
 class _Fairness(NamedTuple):
@@ -67,6 +71,7 @@ class Slide:
         ]
         self.fairness = self._fairness(self.energy) if self.energy else []
         self.kinks, self.creased = Kinks.of(basis), samples.still is not None
+        self.flat = samples.still is not None and bool(samples.still.all())
         self.spacing = spacing(basis, samples)
         length = np.full(len(samples.weights), self.spacing) if samples.length is None else samples.length
         self.longest = [
@@ -83,11 +88,18 @@ class Slide:
         return found
 
     def from_start(self, coefficients: Floats, steps: int) -> Floats:
-        """The coefficients after at most so many steps; a step that leads away is halved, then refused."""
+        """The coefficients after at most so many steps; a step that leads away is halved, then refused.
+
+        A step that would pinch off something asks for more fairness, for all steps to come.
+        """
         feet = self._slid([self._feet(part.points, part.values, coefficients) for part in self.data], coefficients)
-        distance = self._distance(feet)
+        distance, stiffer = self._distance(feet), 1.0
         for step in range(steps):
-            change = self._change(feet, coefficients, self.schedules[min(step, len(self.schedules) - 1)])
+            schedule = self.schedules[min(step, len(self.schedules) - 1)]
+            change = self._change(feet, coefficients, schedule.stiffer(stiffer))
+            while self._pinched(coefficients, coefficients + change) and stiffer < _STIFFEST:
+                stiffer *= _STIFFER
+                change = self._change(feet, coefficients, schedule.stiffer(stiffer))
             before = distance
             for share in (1.0, 0.5, 0.25):
                 trial = coefficients + share * change
@@ -200,12 +212,17 @@ class Slide:
         return 0.0 if self.creased else None
 
     def _smoothed(self, kinks: Kinks, coefficients: Floats) -> tuple[Floats, Floats]:
-        """For each point of a hair the six entries of the form of its kink, (n, 6), and its right side, (n, 3)."""
+        """For each point of a hair the six entries of the form of its kink, (n, 6), and its right side, (n, 3).
+
+        What jumps within the surface counts a little too: nothing else holds the parameters of planes beside corners.
+        """
         normal, kink = kinks.seen(coefficients)
-        size = np.linalg.norm(kinks.across @ coefficients, axis=1)
-        weight = _KINK * self.spacing**4 / np.maximum(size, np.finfo(float).tiny)
+        size = np.maximum(np.linalg.norm(kinks.across @ coefficients, axis=1), np.finfo(float).tiny)
+        weight, slide = _KINK * self.spacing**4 / size, _SLIDE[self.flat]
         form = np.stack([normal[:, a] * normal[:, b] for a, b in PAIRS], axis=1)
-        return (weight / size)[:, None] * form, -(weight * kink)[:, None] * normal
+        form[:, [0, 3, 5]] += slide
+        wanted = kink[:, None] * normal + slide * (kinks.jump @ coefficients) / size[:, None]
+        return (weight / size)[:, None] * form, -weight[:, None] * wanted
 
     def _pinched(self, before: Floats, after: Floats) -> bool:
         """Whether a smooth surface shrinks too much somewhere; facets may, where an edge becomes sharp."""

@@ -28,6 +28,10 @@ class Schedule(NamedTuple):
     damping: float
     pull: float
 
+    def stiffer(self, factor: float) -> Schedule:
+        """With so many times the fairing."""
+        return self._replace(fairing=factor * self.fairing)
+
 
 @dataclass(frozen=True, eq=False)
 class Feet:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from html import escape
 from typing import Any
 
@@ -19,17 +20,22 @@ class Shown:
     def __init__(self, surface: OrbifoldSurface, polyhedron: Polyhedron | None = None) -> None:
         self._picture: ShadedPicture = surface.picture()
         self._page = static_page(
-            [surface_scene(surface, polyhedron, repr(surface), faces=_FACES)], self._picture.png, "surface"
+            [surface_scene(surface, polyhedron, f"{len(surface.coefficients)} functions", faces=_FACES)],
+            self._picture.png,
+            "surface",
         )
 
     def __repr__(self) -> str:
         return "<a surface: shown in Jupyter, marimo and VS Code; `.save('page.html')` writes the page>"
 
     def _repr_html_(self) -> str:
-        """The page in a frame of its own, as marimo and other notebooks take it."""
+        """The page in a frame over the picture, which stays where frames are taken out (a notebook not trusted)."""
+        image = base64.b64encode(self._picture.png).decode()
         return (
-            f'<iframe srcdoc="{escape(self._page)}" sandbox="allow-scripts allow-downloads" title="surface" '
-            f'style="width:100%;height:{_HEIGHT}px;border:0"></iframe>'
+            f'<div style="position:relative;height:{_HEIGHT}px"><img alt="surface" style="max-height:100%" '
+            f'src="data:image/png;base64,{image}"><iframe srcdoc="{escape(self._page)}" '
+            f'sandbox="allow-scripts allow-downloads" title="surface" '
+            f'style="position:absolute;left:0;top:0;width:100%;height:100%;border:0"></iframe></div>'
         )
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:

@@ -129,10 +129,11 @@ def test_linear_algebra_has_one_thread_unless_the_user_says_otherwise(chosen):
     """In a process that knows nothing of what the tests set."""
     code = """
 import json, os, sys
-from orbiframe.cli.main import THREADS, main
+from orbiframe.cli.main import main
+from orbiframe.workers.linear_algebra import VARIABLES
 assert "numpy" not in sys.modules
 main(["--version"])
-print(json.dumps({name: os.environ.get(name) for name in THREADS}))
+print(json.dumps({name: os.environ.get(name) for name in VARIABLES}))
 """
     clean = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")} | chosen
     run = subprocess.run([sys.executable, "-c", code], env=clean, capture_output=True, text=True, check=True)

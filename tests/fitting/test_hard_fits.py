@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import hard_surfaces as hard
 import numpy as np
 import pytest
-from fitted import REGISTRY, config
+from fitted import REGISTRY, config, grid
 from signed_faces import WORDS, wandering
 
+from orbiframe import fit
 from orbiframe.cli.report import summary
 from orbiframe.errors import TopologyError
 from orbiframe.fitting import pipeline
@@ -16,6 +19,8 @@ from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.testing.polyhedra import reference_polyhedra
 
 pytestmark = pytest.mark.long
+
+CROSSCAP = Path(__file__).parents[3] / "shared" / "meshes" / "crosscap_torus_k1.off"
 
 
 def test_a_warning_comes_where_digits_are_missed_in_a_fit() -> None:
@@ -65,3 +70,27 @@ def test_edges_that_a_list_of_vertices_cannot_tell_apart_are_explained() -> None
     mesh = Polyhedron.from_faces(np.eye(4, 3), faces)
     with pytest.raises(TopologyError, match=r"several edges are meant to join the same two vertices.* put a vertex on"):
         pipeline.fit(mesh, config(60), REGISTRY)
+
+
+def test_twelve_by_eight_vertices_are_a_torus() -> None:
+    """Its 45 degrees about the tube are no creases: nearer than the facets are by a factor of twenty."""
+
+    def place(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        ring = 1 + 0.4 * np.cos(v)
+        return np.stack([ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v)], axis=1)
+
+    result = fit(grid(12, 8, place), size=300, progress=False)
+    x, y, z = result.output.vertices.T
+    away = np.abs(np.hypot(np.hypot(x, y) - 1, z) - 0.4) / result.input.diagonal
+    assert result.report["data"]["means"] == "smooth"
+    assert np.sqrt((away**2).mean()) < 4e-4
+
+
+@pytest.mark.skipif(not CROSSCAP.exists(), reason="the folder shared with meshes to try things on is not here")
+def test_a_fold_in_a_smooth_shape_makes_no_horn() -> None:
+    """A torus with a crosscap: as smooth the surface rises over a fold by the size of a facet."""
+    found = fit(CROSSCAP, progress=False).report
+    assert found["data"]["means"] == "semi-smooth"
+    assert "as smooth the surface leaves a facet" in found["data"]["reason"]
+    asked = fit(CROSSCAP, data="smooth", progress=False).report
+    assert found["distance"]["hausdorff"] < 0.015 < asked["distance"]["hausdorff"]

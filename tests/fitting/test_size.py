@@ -20,5 +20,5 @@ def test_thin_parts_handles_and_fine_meshes_get_more() -> None:
 
 def test_splines_need_sites() -> None:
     splines = SimpleNamespace(size=1000, domain=SimpleNamespace(vertex_count=77))
-    assert size_needed(splines, 562) == round(1000 * 562 / 3 / 77)
+    assert size_needed(splines, 562) == round(1000 * 562 * 2 / 3 / 77)
     assert size_needed(SimpleNamespace(size=1000), 562) < 1000

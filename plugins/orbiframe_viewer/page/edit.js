@@ -169,7 +169,7 @@
       for (const name of ["position", "color"]) geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(3 * n), 3));
       geometry.setAttribute("big", new THREE.BufferAttribute(new Float32Array(n), 1));
     }
-    const { position, color, big } = geometry.attributes, size = Math.min(devicePixelRatio, 2);
+    const { position, color, big } = geometry.attributes, size = space.ratio();
     if (kind() === "vertex") position.array.set(own.vertices);
     else scene.controls.forEach((from, k) => { for (let j = 0; j < 3; j++) position.array[3 * k + j] = own.jets[0][3 * from + j]; });
     for (let k = 0; k < n; k++) {
@@ -365,7 +365,7 @@
       }
       space.draw(); plane.draw();
     };
-    const both = { changed: remember, hovered: link };
+    const both = { changed: remember, hovered: link, sharpened: () => own && marks() };
     try { space = new Pane("space", false, both); plane = new Pane("plane", true, both); }
     catch { failed("this browser shows no WebGL; switch it on, or take another browser"); return; }
     surfaceMaterial = material(false);

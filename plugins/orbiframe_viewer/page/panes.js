@@ -5,6 +5,7 @@ const Panes = (() => {
   const DIVERGING = [[11, 79, 138], [120, 170, 205], [214, 217, 220], [230, 165, 110], [184, 69, 10]];
   const CLAY = [176, 196, 216];
   const WARM = [CLAY, [196, 205, 170], [243, 214, 95], [238, 140, 45], [200, 45, 20]];
+  const FRAME = 34, REST = 250, COARSEST = 0.5; // milliseconds a picture, milliseconds until a movement is over, least share
   const $ = (id) => document.getElementById(id);
   const decoded = (text, kind) => {
     const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -44,6 +45,7 @@ const Panes = (() => {
   class Pane {
     constructor(id, flat, heard) { // heard: changed() of the view, hovered(hit or null, pane)
       this.heard = heard;
+      this.share = 1; this.slow = 0; // of the pixels along a side; pictures in a row that took long
       this.canvas = $(id).querySelector("canvas");
       this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
       this.renderer.setClearColor(0, 0);
@@ -74,9 +76,12 @@ const Panes = (() => {
     fit() {
       const { clientWidth: w, clientHeight: h } = this.canvas.parentElement;
       if (!w || !h) return;
-      this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+      this.renderer.setPixelRatio(this.ratio());
       this.renderer.setSize(w, h, false);
-      if (this.camera.isPerspectiveCamera) this.camera.aspect = w / h;
+      if (this.camera.isPerspectiveCamera) {
+        this.camera.aspect = w / h;
+        this.camera.fov = 360 / Math.PI * Math.atan(Math.tan(Math.PI * 16 / 180) / Math.min(w / h, 1)); // 32 for the shorter side
+      }
       else {
         const half = this.half || 1.08, x = w > h ? half * w / h : half, y = w > h ? half : half * h / w;
         Object.assign(this.camera, { left: -x, right: x, top: y, bottom: -y });
@@ -84,9 +89,25 @@ const Panes = (() => {
       this.camera.updateProjectionMatrix();
       this.draw();
     }
+    ratio() { return this.share * Math.min(devicePixelRatio, 2); }
     draw() {
       if (this.asked) return;
-      this.asked = requestAnimationFrame(() => { this.asked = 0; this.renderer.render(this.scene, this.camera); });
+      this.asked = requestAnimationFrame(() => { this.asked = 0; this.renderer.render(this.scene, this.camera); this.paced(); });
+    }
+    // Where pictures take long, those of a movement have fewer pixels, and the picture at rest has all of them.
+    paced() {
+      clearTimeout(this.rest);
+      if (this.share < 1) this.rest = setTimeout(() => this.sharpen(1), REST);
+      const start = performance.now();
+      requestAnimationFrame(() => {
+        const slow = performance.now() - start > FRAME;
+        this.slow = slow ? this.slow + 1 : 0;
+        if (this.slow >= 2 && this.share > COARSEST) this.sharpen(Math.max(0.7 * this.share, COARSEST));
+      });
+    }
+    sharpen(share) {
+      this.share = share; this.slow = 0;
+      this.fit(); this.heard.sharpened?.();
     }
     key(event) {
       const step = 0.12, c = this.camera, t = this.orbit.target;
@@ -194,7 +215,7 @@ const Panes = (() => {
 
   const screenshot = (shown, name, said) => {
     const sheet = document.createElement("canvas");
-    for (const pane of shown) pane.renderer.render(pane.scene, pane.camera);
+    for (const pane of shown) { pane.sharpen(1); pane.renderer.render(pane.scene, pane.camera); }
     sheet.width = shown.reduce((sum, pane) => sum + pane.canvas.width, 0); sheet.height = Math.max(...shown.map((pane) => pane.canvas.height));
     const brush = sheet.getContext("2d");
     brush.fillStyle = getComputedStyle(document.body).backgroundColor; brush.fillRect(0, 0, sheet.width, sheet.height);

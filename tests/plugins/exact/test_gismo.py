@@ -113,6 +113,23 @@ def test_splinepy_finds_the_same_interfaces(tmp_path: Path) -> None:
         np.testing.assert_allclose(spline.evaluate(np.stack([s, t], axis=1)), evaluated(patch, s, t), atol=1e-12)
 
 
+def test_gismo_itself_reads_a_surface_without_boundary(tmp_path: Path) -> None:
+    gismo = pytest.importorskip("pygismo", reason="pygismo is for Linux: pip install pygismo")
+    written("Klein bottle", tmp_path / "p.xml", conforming=True)
+    read, alone = gismo.core.gsMultiPatch(), gismo.core.gsMultiPatch()
+    gismo.io.gsReadFile(str(tmp_path / "p.xml"), read)
+    patches, ours = patches_of(tmp_path / "p.xml")
+    assert (read.nPatches(), read.domainDim(), read.targetDim()) == (len(patches), 2, 3)
+    assert (len(read.interfaces()), len(read.boundaries())) == (len(ours), 0)
+    for number, patch in enumerate(patches.values()):
+        alone.addPatch(read.patch(number))
+        s, t = np.random.default_rng(number).random((2, 20))
+        np.testing.assert_allclose(read.patch(number).eval(np.stack([s, t])).T, evaluated(patch, s, t), atol=1e-12)
+    # The patches without the interfaces of the file: G+Smo finds them by their corners.
+    assert alone.computeTopology(1e-6, False, False)
+    assert (len(alone.interfaces()), len(alone.boundaries())) == (len(ours), 0)
+
+
 def swapped(row: np.ndarray) -> tuple[int, ...]:
     """An interface seen from its other patch."""
     one, side, other, side_there, first, second, keeps_first, keeps_second = row.tolist()

@@ -10,7 +10,7 @@ from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
-from browsers import asked_for
+from browsers import asked_for, drawn, picture
 from edits import REGISTRY, first, session_of
 from orbiframe_viewer.server import address, serve
 
@@ -31,7 +31,7 @@ def edited(tmp_path):
     thread.join(60)
 
 
-def waited(condition, seconds=60.0):
+def waited(condition, seconds=180.0):
     until = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < until
@@ -48,20 +48,6 @@ def ready(driver, where=None):
         driver.get(where)
     waited(lambda: driver.execute_script("return document.body.dataset.drawn") == "true")
     drawn(driver)
-
-
-def drawn(driver):
-    driver.execute_async_script("const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done))")
-
-
-def picture(driver, pane="space"):
-    """The pixels of a pane, (h, w, 3)."""
-    import io
-
-    from matplotlib.image import imread
-
-    drawn(driver)
-    return imread(io.BytesIO(driver.find_element("css selector", f"#{pane} canvas").screenshot_as_png))[..., :3]
 
 
 def canvas(driver):

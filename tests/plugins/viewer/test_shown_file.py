@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import re
 import threading
 import urllib.request
 
@@ -90,7 +91,9 @@ def test_a_surface_shows_itself_in_notebooks_and_as_a_picture_without_javascript
     assert set(bundle) == {"text/html", "image/png", "text/plain"}
     assert bundle["image/png"].startswith(b"\x89PNG")
     assert bundle["text/html"] == shown._repr_html_()
-    assert bundle["text/html"].startswith("<iframe srcdoc=")
+    frameless = re.sub("<iframe.*</iframe>", "", bundle["text/html"], flags=re.DOTALL)
+    assert "<script" not in frameless
+    assert 'src="data:image/png;base64,' in frameless
     shown.save(tmp_path / "torus.html")
     text = (tmp_path / "torus.html").read_text()
     assert text.count("<script") == text.count("</script>") == 4
@@ -107,9 +110,17 @@ def test_a_notebook_frame_runs_in_a_browser(tmp_path, open_browser):
     page.write_text(f"<!doctype html><meta charset=utf-8>{fitted('torus.off').surface.show()._repr_html_()}")
     driver = open_browser()
     driver.get(page.as_uri())
+    # The frame lies over the picture, which is seen where the frame is taken out.
+    seen = """const box = document.querySelector("img").getBoundingClientRect();
+        return document.elementFromPoint(box.left + 5, box.top + 5).tagName"""
+    assert driver.execute_script(seen) == "IFRAME"
     driver.switch_to.frame(0)
     state = "return document.body.dataset.state"
     WebDriverWait(driver, 30).until(lambda each: each.execute_script(state) == "ready")
+    driver.switch_to.default_content()
+    driver.execute_script("document.querySelector('iframe').remove()")
+    assert driver.execute_script(seen) == "IMG"
+    assert driver.execute_script("return document.querySelector('img').naturalWidth") > 100
 
 
 def test_the_command_serves_until_it_is_interrupted(orbiframe, tmp_path, monkeypatch, capsys):

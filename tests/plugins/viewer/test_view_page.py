@@ -8,7 +8,7 @@ from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
-from browsers import asked_for
+from browsers import asked_for, drawn, picture
 from fitted import DATASETS, fitted
 from orbiframe_viewer.scene import surface_scene
 from orbiframe_viewer.server import address, serve
@@ -49,21 +49,6 @@ def ready(driver, where=None):
         driver.get(where)
     WebDriverWait(driver, 30).until(lambda each: each.execute_script(STATE) == "ready")
     drawn(driver)
-
-
-def drawn(driver):
-    driver.execute_async_script("const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done))")
-
-
-def picture(driver, pane="space"):
-    """The pixels of a pane, (h, w, 4)."""
-    import io
-
-    from matplotlib.image import imread
-
-    drawn(driver)
-    element = driver.find_element("css selector", f"#{pane} canvas")
-    return imread(io.BytesIO(element.screenshot_as_png))[..., :3]
 
 
 def chosen(driver, name, value):
@@ -240,3 +225,41 @@ def test_a_screenshot_is_a_file_of_both_panes(served, open_browser):
     left, right = np.array_split(pixels, 2, axis=1)
     assert np.ptp(left) > 0.5
     assert np.ptp(right) > 0.5
+
+
+@pytest.mark.parametrize(("milliseconds", "share"), [(100, 0.5), (1, 1)])
+def test_pictures_of_a_movement_have_fewer_pixels_only_where_they_take_long(served, open_browser, milliseconds, share):
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    driver = open_browser()
+    ready(driver, served)
+    wide = "return document.querySelector('#space canvas').width"
+    full = driver.execute_script("return Math.floor(document.querySelector('#space canvas').clientWidth)")
+    WebDriverWait(driver, 10).until(lambda each: abs(each.execute_script(wide) - full) <= 1)
+    # A clock on which each look takes so long, and turns by the keyboard.
+    turns = """const [step, done] = arguments; let now = 0, k = 0; performance.now = () => (now += step);
+        const c = document.querySelector("#space canvas"), widths = [];
+        const turn = () => {
+          widths.push(c.width);
+          if (++k > 8) { done(widths); return; }
+          c.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowLeft" }));
+          requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(turn)));
+        }; turn();"""
+    widths = driver.execute_async_script(turns, milliseconds)
+    assert min(widths) == pytest.approx(share * full, abs=1)
+    assert widths == sorted(widths, reverse=True)
+    WebDriverWait(driver, 10).until(lambda each: abs(each.execute_script(wide) - full) <= 1)
+
+
+@pytest.mark.parametrize("size", [(800, 420), (500, 620), (420, 900)])
+def test_the_surface_is_seen_whole_in_windows_of_all_shapes(served, open_browser, size):
+    driver = open_browser(size=size)
+    ready(driver, served)
+    driver.execute_script("document.querySelector('#told').hidden = true")  # words lie over it
+    pixels = picture(driver)
+    inside = np.abs(pixels - pixels[0, 0]).max(axis=2) > 0.1
+    assert not inside[:, :4].any()
+    assert not inside[:, -4:].any()
+    assert not inside[:4].any()
+    assert not inside[-4:].any()
+    assert max(np.ptp(np.nonzero(inside)[0]) / inside.shape[0], np.ptp(np.nonzero(inside)[1]) / inside.shape[1]) > 0.5
