@@ -60,12 +60,12 @@ class Data:
     """What the mesh means.
 
     means: "facets", the polyhedron is the truth; "smooth", its vertices lie on a smooth surface; "semi-smooth", so they
-    do where facets are curved; "auto" decides by its bends. lift: whether a smooth mesh is mapped again after it has
-    been lifted onto its first surface. noise: the root mean square error of each coordinate of the vertices of a smooth
-    mesh, relative to the diagonal of the bounding box; None: found from the vertices. creases: edges that bend by so
-    many degrees or more stay sharp, or "marked", those that the file marks; None: none does. fixed: points in space (x,
-    y, z) that the surface passes through, or (x, y, z, nx, ny, nz) with a normal that it has there, up to the sign;
-    each at the nearest point of the mesh.
+    do where facets are curved; "auto" decides by its bends. lift: whether a smooth mesh whose facets show is mapped
+    again after it has been lifted onto its first surface. noise: the root mean square error of each coordinate of the
+    vertices of a smooth mesh, relative to the diagonal of the bounding box; None: found from the vertices. creases:
+    edges that bend by so many degrees or more stay sharp, or "marked", those that the file marks; None: none does.
+    fixed: points in space (x, y, z) that the surface passes through, or (x, y, z, nx, ny, nz) with a normal that it has
+    there, up to the sign; each at the nearest point of the mesh.
     """
 
     means: Literal["auto", "smooth", "semi-smooth", "facets"] = "auto"

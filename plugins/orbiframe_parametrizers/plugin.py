@@ -59,13 +59,13 @@ def orbiframe_components() -> list[Component]:
         Component(
             "solver",
             "metis",
-            "orbiframe_parametrizers.solvers:metis",
+            "orbiframe_parametrizers.metis:metis",
             "nested dissection by METIS, factors by SuperLU",
         ),
         Component(
             "solver",
             "pardiso",
-            "orbiframe_parametrizers.solvers:pardiso",
+            "orbiframe_parametrizers.pardiso:pardiso",
             "Intel's Pardiso, on x86-64",
             extra="orbiframe[pardiso]",
         ),
