@@ -37,6 +37,10 @@ _MOST_STRAY = 0.75
 _LEAST_ERROR, _MOST_ERROR, _ROUNDS = 0.2, 8.0, 8
 
 
+# Farther from the mesh, in diagonals, too few functions have made spikes of its thin parts.
+_MOST_BEYOND = 0.08
+
+
 class Approximation(NamedTuple):
     """A surface for a mesh of unit size, its map, what it was fitted to, how well, and what a user should know."""
 
@@ -82,6 +86,8 @@ class Approximations:
             while (stray := self._stray(found)) > _MOST_STRAY:
                 vertices = len(self.mapping.triangles.vertices)
                 found = self._meant(mapped, basis, found.meaning.less_smooth(vertices, size, stray), size)
+            if notes and found.accuracy.to_mesh.max > _MOST_BEYOND:
+                raise FitError(f"the surface leaves the mesh by {found.accuracy.to_mesh.max:.2g} of the diagonal")
         except FitError as error:
             raise FitError("; ".join((str(error), *notes))) from error
         return found._replace(energy=energy, notes=notes)

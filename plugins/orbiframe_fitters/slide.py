@@ -27,6 +27,8 @@ _LONGEST_STEP = 0.3
 _MOST_STRETCH = 30.0
 # A step that leaves more than this share of the distance is the last one.
 _GAIN = 0.97
+# After all steps that are asked for as many more follow, as long as each takes off so much.
+_MORE, _LATE_GAIN = 2, 0.85
 # With creases at least so many, for planes become flat while curved sides have long settled.
 _LEAST_STEPS = 4
 # A smooth surface is shrunk to at least so much in one step at every datum: beyond, a limb is being pinched off.
@@ -88,13 +90,13 @@ class Slide:
         return found
 
     def from_start(self, coefficients: Floats, steps: int) -> Floats:
-        """The coefficients after at most so many steps; a step that leads away is halved, then refused.
+        """The coefficients after so many steps, more where they help much; one that leads away is halved, then refused.
 
         A step that would pinch off something asks for more fairness, for all steps to come.
         """
         feet = self._slid([self._feet(part.points, part.values, coefficients) for part in self.data], coefficients)
         distance, stiffer = self._distance(feet), 1.0
-        for step in range(steps):
+        for step in range(_MORE * steps):
             schedule = self.schedules[min(step, len(self.schedules) - 1)]
             change = self._change(feet, coefficients, schedule.stiffer(stiffer))
             while self._pinched(coefficients, coefficients + change) and stiffer < _STIFFEST:
@@ -112,7 +114,8 @@ class Slide:
             else:
                 return coefficients
             coefficients, feet = trial, there
-            if distance > _GAIN * before and step >= (_LEAST_STEPS if self.creased else len(self.schedules)) - 1:
+            gain = _GAIN if step < steps - 1 else _LATE_GAIN
+            if distance > gain * before and step >= (_LEAST_STEPS if self.creased else len(self.schedules)) - 1:
                 break
         return coefficients
 

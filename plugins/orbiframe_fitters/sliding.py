@@ -40,7 +40,8 @@ class Sliding(Fitter):
     and has their normals.
 
     fairing: how strongly ripples are damped, as in `least-squares`; by default that of each step, less than there,
-    because far fewer conditions are set; steps: at most so many; it stops by itself when the distance falls no more.
+    because far fewer conditions are set; steps: at most so many, and as many again while each takes off a sixth of the
+    distance; it stops by itself when the distance falls no more.
 
     Raises UsageError for an option out of range, and what `least-squares` raises.
     """

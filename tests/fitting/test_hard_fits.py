@@ -12,7 +12,7 @@ from signed_faces import WORDS, wandering
 
 from orbiframe import fit
 from orbiframe.cli.report import summary
-from orbiframe.errors import TopologyError
+from orbiframe.errors import FitError, TopologyError
 from orbiframe.fitting import pipeline
 from orbiframe.meshes.defects import faces_with_repeated_vertices
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -20,6 +20,7 @@ from orbiframe.testing.polyhedra import reference_polyhedra
 
 pytestmark = pytest.mark.long
 
+FOX = Path(__file__).parents[3] / "shared" / "cases" / "meshes" / "fox.off"
 CROSSCAP = Path(__file__).parents[3] / "shared" / "meshes" / "crosscap_torus_k1.off"
 
 
@@ -94,3 +95,10 @@ def test_a_fold_in_a_smooth_shape_makes_no_horn() -> None:
     assert "as smooth the surface leaves a facet" in found["data"]["reason"]
     asked = fit(CROSSCAP, data="smooth", progress=False).report
     assert found["distance"]["hausdorff"] < 0.015 < asked["distance"]["hausdorff"]
+
+
+@pytest.mark.skipif(not FOX.exists(), reason="the folder shared with meshes to try things on is not here")
+@pytest.mark.parametrize("basis", ["dms", "ps6"])
+def test_too_few_functions_make_no_spikes_but_an_error(basis: str) -> None:
+    with pytest.raises(FitError, match=r"leaves the mesh by 0\.\d+ of the diagonal; .* too few .* take about"):
+        fit(FOX, basis=basis, size=200, progress=False)
