@@ -13,6 +13,7 @@ KINDS = (
     "group",
     "parametrizer",
     "optimizer",
+    "solver",
     "basis",
     "fitter",
     "reader",
@@ -42,8 +43,8 @@ class Component:
     summary: one line, shown by `orbiframe plugins`; extra: the pip requirement that supplies an optional dependency;
     suffixes: file suffixes with their dot, lower case (kinds that read or make files only); welds: whether every face
     has corners of its own in the file, of which the reader joins the equal ones; textures: whether a writer keeps the
-    texture coordinates of corners; meanings: what each option means, by
-    its name, for the reference, the schema and the commented default of configurations.
+    texture coordinates of corners, marks: whether it keeps edges that are marked as sharp; meanings: what each option
+    means, by its name, for the reference, the schema and the commented default of configurations.
 
     >>> from orbiframe import Component, hookimpl
     >>> @hookimpl
@@ -59,6 +60,7 @@ class Component:
     suffixes: tuple[str, ...] = ()
     welds: bool = False
     textures: bool = False
+    marks: bool = False
     meanings: Mapping[str, str] = field(default_factory=dict, hash=False)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from fitted import DATASETS, REGISTRY
 
 from orbiframe.delaunay.crease_domain import creased
+from orbiframe.delaunay.crease_sites import Asked
 from orbiframe.files import gate
 from orbiframe.fitting import pipeline
 from orbiframe.fitting.config import Config
@@ -33,11 +34,33 @@ def cylinder(sides: int, rows: int = 1) -> Polyhedron:
     return Polyhedron.from_faces(vertices, [*walls, list(range(sides))[::-1], lid])
 
 
+def rounded_bar(steps: int = 6, width: float = 4.0, radius: float = 0.5) -> Polyhedron:
+    """A prism over a square with two round corners: planes that end in quarters of a cylinder, along its length."""
+    turn = np.pi / 2 * np.arange(steps + 1) / steps
+    arc = radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    inner = width - radius
+    other = np.stack([-arc[:, 1], arc[:, 0]], axis=1) + np.array([radius, inner])
+    outline = np.concatenate([arc + inner, other, np.array([[0, 0], [width, 0]])])
+    count = len(outline)
+    vertices = np.concatenate([np.column_stack([outline, np.full(count, z)]) for z in (0.0, 3.0)])
+    walls = [[i, (i + 1) % count, count + (i + 1) % count, count + i] for i in range(count)]
+    return triangulated(
+        Polyhedron.from_faces(vertices, [*walls, list(range(count))[::-1], list(range(count, 2 * count))])
+    )
+
+
+def wedge() -> Polyhedron:
+    """A prism over a thin triangle, whose edge along the third axis turns by 166 degrees."""
+    outline = np.array([[0, 0], [4, 0], [4, 1]])
+    vertices = np.concatenate([np.column_stack([outline, np.full(3, z)]) for z in (0.0, 2.0)])
+    return Polyhedron.from_faces(vertices, [[2, 1, 0], [3, 4, 5], [0, 1, 4, 3], [1, 2, 5, 4], [2, 0, 3, 5]])
+
+
 @cache
 def mesh_of(name: str) -> Polyhedron:
     """A mesh by name, triangles only."""
-    mesh = cylinder(24) if name == "cylinder" else gate.read(DATASETS / name, REGISTRY)
-    return triangulated(mesh)
+    made = {"cylinder": lambda: cylinder(24), "rounded bar": rounded_bar, "wedge": wedge}
+    return triangulated(made[name]() if name in made else gate.read(DATASETS / name, REGISTRY))
 
 
 @cache
@@ -68,4 +91,4 @@ def flat_map(name: str, longest: float = 0.04) -> tuple[Triangulation, Bisection
 def placed(name: str, size: int = 300, angle: float = 30) -> Triangulation:
     """The same with creases and sites for ps2."""
     triangulation, refinement = flat_map(name)
-    return creased(triangulation, sharp_edges(refinement.polyhedron, angle), size, (3, 0, 0))
+    return creased(triangulation, sharp_edges(refinement.polyhedron, angle), Asked(size, (3, 0, 0)))

@@ -17,10 +17,11 @@ import numpy as np
 from orbiframe import FormatError, PluginError, Polyhedron
 from orbiframe.components.registry import Registry
 from orbiframe.files import gate
+from orbiframe.meshes import MarkedEdges
 
-TABLES = ("normals", "colors", "face_colors")
+TABLES = ("normals", "colors", "face_colors", "marked")
 HEADING = ("suffix", "read and written by", "triangles", "quads", "n-gons", "normals", "colours of vertices",
-           "colours of faces", "coordinates")  # fmt: skip
+           "colours of faces", "sharp edges", "coordinates")  # fmt: skip
 
 
 def meshes() -> dict[str, Polyhedron]:
@@ -65,7 +66,9 @@ def _flat(mesh: Polyhedron) -> Polyhedron:
 
 def _full(mesh: Polyhedron) -> Polyhedron:
     grey = np.full((mesh.face_count, 3), 0.2)
-    return replace(mesh, normals=mesh.vertices, colors=np.full_like(mesh.vertices, 0.6), face_colors=grey)
+    marked = MarkedEdges(np.array([[0, 1], [3, 1]]), np.array([1.0, np.pi]))
+    colors = np.full_like(mesh.vertices, 0.6)
+    return replace(mesh, normals=mesh.vertices, colors=colors, face_colors=grey, marked=marked)
 
 
 def _again(path: Path, mesh: Polyhedron, registry: Registry) -> Polyhedron | None:

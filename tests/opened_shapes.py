@@ -8,13 +8,17 @@ from typing import Any
 
 import numpy as np
 from OCP.BRep import BRep_Tool
+from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
+from OCP.collections import IndexedDataMap_TopoDS_Shape_List_TopoDS_Shape_TopTools_ShapeMapHasher as FacesOfEdges
+from OCP.GCPnts import GCPnts_AbscissaPoint
+from OCP.gp import gp_Pnt, gp_Vec
 from OCP.GProp import GProp_GProps
 from OCP.IGESControl import IGESControl_Reader
 from OCP.STEPControl import STEPControl_Reader
-from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
-from OCP.TopExp import TopExp_Explorer
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_REVERSED, TopAbs_SHELL, TopAbs_SOLID
+from OCP.TopExp import TopExp, TopExp_Explorer
 from OCP.TopoDS import TopoDS
 from orbiframe_exact.open_cascade import write_iges, write_step
 
@@ -63,6 +67,30 @@ def volume(shape: Any) -> float:
     found = GProp_GProps()
     BRepGProp.VolumeProperties_s(shape, found, 1e-12, False, False)
     return float(found.Mass())
+
+
+def angles_at_edges(shape: Any) -> Floats:
+    """Of every edge between two faces its length, and the angle of their outward normals at its middle, (E, 2)."""
+    table = FacesOfEdges()
+    TopExp.MapShapesAndAncestors_s(shape, TopAbs_EDGE, TopAbs_FACE, table)
+    found = []
+    for k in range(1, table.Extent() + 1):
+        edge, faces = TopoDS.Edge(table.FindKey(k)), [TopoDS.Face(face) for face in table.FindFromIndex(k)]
+        if len(faces) == 2 and not BRep_Tool.Degenerated_s(edge):
+            one, other = (_normal_at_middle(edge, face) for face in faces)
+            length = GCPnts_AbscissaPoint.Length_s(BRepAdaptor_Curve(edge))
+            found.append((length, np.degrees(np.arctan2(np.linalg.norm(np.cross(one, other)), one @ other))))
+    return np.array(found)
+
+
+def _normal_at_middle(edge: Any, face: Any) -> Floats:
+    curve = BRepAdaptor_Curve2d(edge, face)
+    at = curve.Value((curve.FirstParameter() + curve.LastParameter()) / 2)
+    place, first, second = gp_Pnt(), gp_Vec(), gp_Vec()
+    BRep_Tool.Surface_s(face).D1(at.X(), at.Y(), place, first, second)
+    normal = np.cross(first.Coord(), second.Coord())
+    sign = -1.0 if face.Orientation() == TopAbs_REVERSED else 1.0
+    return np.asarray(sign * normal / np.linalg.norm(normal))
 
 
 def middles(shape: Any, patches: TrianglePatches | PeriodicPatch) -> Floats:

@@ -27,8 +27,11 @@ This page is made by `python docs/reference/make_components.py`; a test fails wh
 
 
 def options(registry: Registry, component: Component) -> str:
-    """The options of a component and their defaults, as they are written in TOML or Python."""
-    if component.kind in ("command", "picture"):
+    """The options of a component and their defaults, as they are written in TOML or Python.
+
+    Solvers have none, and that of an extra need not be installed.
+    """
+    if component.kind in ("command", "picture", "solver"):
         return ""
     found = options_of(registry.load(component.kind, component.name))
     return ", ".join(f"`{o.name}`" if o.default is Parameter.empty else f"`{o.name}={o.default}`" for o in found)

@@ -93,7 +93,7 @@ def export(path: Path, result: Result, options: dict[str, object], registry: Reg
 
     progress("export", None)
     start = time.perf_counter()
-    found = gate.export(path, result.surface, registry, options=options)
+    found = gate.export(path, result.surface, registry, options=options | _quads(path, result, options, registry))
     result.report["seconds"]["export"] = round(time.perf_counter() - start, 4)
     progress("export", result.report["seconds"]["export"])
     if "faces" not in options:
@@ -108,6 +108,14 @@ def export(path: Path, result: Result, options: dict[str, object], registry: Reg
     )
 
 
+def _quads(path: Path, result: Result, options: dict[str, object], registry: Registry) -> dict[str, object]:
+    """The faces of the input for an exporter that makes blocks of them, if all have four corners."""
+    asked = "faces" in options and "quads" in (_exporter_options(path, registry) or ())
+    if not asked or (result.input.face_sizes != 4).any():
+        return {}
+    return {"quads": result.input.tail.reshape(-1, 4).tolist()}
+
+
 def _shortcomings(found: dict[str, Any]) -> Iterator[str]:
     """What a user should know of faces that are not as near, as smooth or as sound as they should be."""
     place = ", ".join(f"{x:.6g}" for x in found["worst"])
@@ -120,6 +128,11 @@ def _shortcomings(found: dict[str, Any]) -> Iterator[str]:
         yield (
             "Open CASCADE does not find the shape of the file valid, as where a surface is pinched or passes through "
             "itself on an edge; try another number of --faces"
+        )
+    if found.get("divided"):
+        yield (
+            f"colours of the mesh divide {found['divided']} of the {found['faces']} faces of the file; each has that "
+            "of most of its area, and with more --faces less is divided"
         )
 
 

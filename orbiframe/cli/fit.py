@@ -9,7 +9,6 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from orbiframe.cli.boundary import add_boundary
 from orbiframe.cli.exports import export, export_options, require_known, size_of
 from orbiframe.cli.report import json_text, summary, warnings_of, write_report
 from orbiframe.cli.speech import say
@@ -19,6 +18,7 @@ from orbiframe.files.destination import require_destination, require_textures
 from orbiframe.files.folder import require_folder
 from orbiframe.files.outputs import require_apart, require_output
 from orbiframe.files.repair_options import add_repairs, repaired, repairs_asked
+from orbiframe.fitting.boundary_option import add_boundary
 
 if TYPE_CHECKING:
     from orbiframe.fitting.config import Config
@@ -48,13 +48,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=Path,
         help="the map of a saved surface, for its mesh moved or cut finer (map.like)",
     )
+    add("--solver", metavar="NAME", help="what solves the equations of the map, such as pardiso (solver.name)")
     add("--basis", metavar="NAME", help="the functions, such as ps6 or gaussian (basis.name)")
     add("--data", metavar="MEANS", help="what the mesh means: smooth, semi-smooth or facets; default auto (data.means)")
     add(
         "--creases",
         metavar="ANGLE",
-        type=float,
-        help="edges that bend by ANGLE degrees or more stay sharp (data.creases)",
+        type=_angle,
+        help="edges that bend by ANGLE degrees or more stay sharp; 'marked': those that the file marks (data.creases)",
     )
     add_boundary(parser)
     add("--fast", action="store_true", help="one linear fit on one map (fitter.name=least-squares, data.lift=false)")
@@ -87,6 +88,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--quiet", action="store_true", help="print nothing but errors")
     add_repairs(parser)
     parser.set_defaults(run=run, wrong_use=parser.error)
+
+
+def _angle(word: str) -> float | str:
+    """An angle, or a word, of which the configuration knows one."""
+    try:
+        return float(word)
+    except ValueError:
+        return word
 
 
 def run(args: argparse.Namespace, registry: Registry) -> int:
@@ -207,6 +216,7 @@ def overrides(args: argparse.Namespace) -> list[str]:
         "group.method": args.group,
         "map.method": args.map,
         "map.like": None if args.like is None else json.dumps(str(args.like)),
+        "solver.name": args.solver,
         "basis.name": args.basis,
         "shape.method": args.shape,
         "basis.size": args.size,

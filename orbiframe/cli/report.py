@@ -102,8 +102,8 @@ def _boundary(boundary: Mapping[str, Any] | None) -> Iterator[tuple[str, str]]:
 
 def _distances(distance: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Distances both ways and at the vertices, with the place where the mesh is missed most."""
-    parts = ("mesh_to_surface", "to the surface"), ("surface_to_mesh", "back"), ("vertices_to_surface", "vertices")
-    words = (f"{name} {distance[key]['rms']:.2e} (max {distance[key]['max']:.2e})" for key, name in parts)
+    parts = {"mesh_to_surface": "to the surface", "surface_to_mesh": "back", "vertices_to_surface": "vertices"}
+    words = (f"{name} {distance[key]['rms']:.2e} (max {distance[key]['max']:.2e})" for key, name in parts.items())
     place = ", ".join(f"{x:.4g}" for x in distance["mesh_to_surface"]["place"])
     yield "distance", f"{', '.join(words)}; farthest at ({place})"
 
@@ -118,9 +118,14 @@ def _creases(creases: Mapping[str, Any] | None) -> Iterator[tuple[str, str]]:
         ends, (kink, worst) = _counted(creases["ends"], "end", "ends"), creases["kinks"]
         yield (
             "creases",
-            f"{curves} of {creases['angle_from']:g}° or more, {corners}, {ends}; within {creases['distance']:.1e}, "
+            f"{curves} {_kind(creases['angle_from'])}, {corners}, {ends}; within {creases['distance']:.1e}, "
             f"angles off by {creases['angle']:.2g}°, kinks beside them {kink:.2g}° (max {worst:.2g}°)",
         )
+
+
+def _kind(creases: float | str) -> str:
+    """Which edges are creases: from an angle on, or marked ones."""
+    return "marked" if isinstance(creases, str) else f"of {creases:g}° or more"
 
 
 def _texture(uv: Mapping[str, Any] | None) -> Iterator[tuple[str, str]]:

@@ -1,5 +1,7 @@
 """The public names of orbiframe.delaunay, each with the module it lives in."""
 
+from .crease_domain import crease_triangulation as crease_triangulation, creased as creased
+from .crease_sites import Asked as Asked
 from .polygon_fan import polygon_triangulation as polygon_triangulation
 from .site_triangulation import (
     SiteTriangulation as SiteTriangulation,

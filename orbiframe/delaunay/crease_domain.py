@@ -8,21 +8,18 @@ near, so that the crease runs along edges of the domain exactly, and no triangle
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from orbiframe.delaunay.crease_sites import Asked, crease_sites
 from orbiframe.delaunay.forced_edges import with_edge
 from orbiframe.delaunay.site_triangulation import delaunay_of_vertices
 from orbiframe.errors import MapError
-from orbiframe.meshes.edge_paths import Graph, dijkstra_forest, edge_graph, farthest_points
-from orbiframe.meshes.sizes import vector_areas
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.triangulations.crease_chains import Chain, CreaseGraph
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
-from orbiframe.triangulations.local_girth import site_density
 from orbiframe.triangulations.point_location import Locator
 from orbiframe.triangulations.triangulation import Triangulation
 
@@ -32,29 +29,17 @@ Bools = NDArray[np.bool_]
 
 # Pieces are halved so often, then made edges by flips; those without a middle are made edges so at once.
 _ROUNDS, _LAST_ROUNDS = 10, 8
-# No site between creases is nearer to one than this share of the spacing.
-_APART = 0.6
-# How fast the spacing grows away from creases with a smaller one.
-_SLOPE = 0.7
-# The spacing is found by so many trials, or as soon as the number of functions is as near as this.
-_TRIALS, _ENOUGH = 5, 0.08
-# Between two sites a crease turns by no more than about this.
-_BEND = np.radians(45)
 # How far, in barycentric coordinates, the middle of a piece of a crease may be from an edge.
 _ON_EDGE = 1e-7
-# Extra unknowns of a vertex on a crease, and extra open edges there: one of the crease, two hairs.
-_EXTRA_AT_VERTEX, _EXTRA_EDGES = 2, 3
 
 
-def creased(
-    triangulation: Triangulation, crease: Bools, size: int, unknowns: tuple[int, int, int], grading: float = 0.6
-) -> Triangulation:
-    """The map with creases (H,) and sites for about `size` functions, so that creases are geodesic from site to site.
+def creased(triangulation: Triangulation, crease: Bools, asked: Asked, seam: Bools | None = None) -> Triangulation:
+    """The map with creases (H,) and sites for as many functions as are asked for, geodesic from site to site.
 
-    unknowns: how many there are at each vertex, edge and triangle of the domain. Raises MapError where creases cannot
-    be placed.
+    seam: (H,), those of the creases across which the surface is smooth. Raises MapError where creases cannot be placed.
     """
-    return _Placing(triangulation, crease, grading).placed(size, unknowns)
+    marked = replace(triangulation, crease=crease, seam=seam)
+    return _Placing(triangulation, marked).placed(crease_sites(marked, asked))
 
 
 def crease_triangulation(triangulation: Triangulation) -> GeodesicTriangulation:
@@ -62,9 +47,8 @@ def crease_triangulation(triangulation: Triangulation) -> GeodesicTriangulation:
 
     Raises MapError where a piece of a crease between two sites is no edge.
     """
-    assert triangulation.crease is not None
     assert triangulation.sites is not None
-    domain, pieces, edges = _with_edges(triangulation, triangulation.crease, triangulation.sites, np.inf)
+    domain, pieces, edges = _with_edges(triangulation, triangulation.sites, np.inf)
     if (edges < 0).any():
         raise MapError(_no_place(triangulation, pieces[int(np.argmin(edges))]))
     return domain
@@ -93,13 +77,14 @@ def off_geodesics(triangulation: Triangulation) -> float:
 
 
 def _with_edges(
-    triangulation: Triangulation, crease: Bools, sites: Ints, forced: float
+    triangulation: Triangulation, sites: Ints, forced: float
 ) -> tuple[GeodesicTriangulation, list[Chain], Ints]:
     """The domain with its creases, the pieces of creases between sites, and the halfedge of each, -1 for none.
 
     Pieces that are no edges of the Delaunay triangulation are made edges by flips, if all of them have at most `forced`
     vertices; else the longer ones are to be halved first.
     """
+    assert triangulation.crease is not None
     start = GeodesicTriangulation.of_map(triangulation)
     number = np.empty(len(triangulation.polyhedron.vertices), dtype=np.intp)
     number[triangulation.polyhedron.triangles] = start.vertex
@@ -107,7 +92,7 @@ def _with_edges(
     domain = found.triangulation
     vertex = np.full(len(number), -1, dtype=np.intp)
     vertex[sites] = found.vertex
-    pieces = list(CreaseGraph.of(triangulation.polyhedron, crease, sites).chains(triangulation))
+    pieces = list(CreaseGraph.of(triangulation.polyhedron, triangulation.crease, sites).chains(triangulation))
     edges = _edges_under(domain, triangulation, pieces, vertex)
     missing = [piece for piece, edge in zip(pieces, edges, strict=True) if edge < 0]
     if any(len(piece.vertices) > forced for piece in missing):
@@ -118,9 +103,18 @@ def _with_edges(
             domain, vertex[sites] = again.triangulation, again.vertex[vertex[sites]]
     if missing:
         edges = _edges_under(domain, triangulation, pieces, vertex)
+    domain = replace(domain, crease=_flags(domain, edges))
+    if triangulation.seam is not None:
+        smooth = triangulation.seam[np.array([piece.first for piece in pieces])]
+        domain = replace(domain, seam=_flags(domain, edges[smooth]))
+    return domain, pieces, edges
+
+
+def _flags(domain: GeodesicTriangulation, halfedges: Ints) -> Bools:
+    """Marks at some halfedges, and at their twins; -1 is none."""
     flags = np.zeros(3 * domain.face_count, dtype=np.bool_)
-    flags[edges[edges >= 0]] = True
-    return replace(domain, crease=flags | flags[domain.twin]), pieces, edges
+    flags[halfedges[halfedges >= 0]] = True
+    return np.asarray(flags | flags[domain.twin])
 
 
 def _edges_under(
@@ -157,24 +151,27 @@ def _no_place(triangulation: Triangulation, piece: Chain) -> str:
 
 @dataclass(frozen=True, eq=False)
 class _Placing:
-    """The creases of a map on their way to places."""
+    """The creases of a map on their way to places: the map without marks, and with them."""
 
     triangulation: Triangulation
-    crease: Bools
-    grading: float
+    marked: Triangulation
 
-    def placed(self, size: int, unknowns: tuple[int, int, int]) -> Triangulation:
-        sites = self._sites(size, unknowns)
+    @property
+    def crease(self) -> Bools:
+        assert self.marked.crease is not None
+        return self.marked.crease
+
+    def placed(self, sites: Ints) -> Triangulation:
         for turn in range(_ROUNDS + _LAST_ROUNDS):
             forced = 2 if turn < _ROUNDS else np.inf
-            _, pieces, edges = _with_edges(self.triangulation, self.crease, sites, forced)
+            _, pieces, edges = _with_edges(self.marked, sites, forced)
             missing = [piece for piece, edge in zip(pieces, edges, strict=True) if edge < 0]
             missing = [piece for piece in missing if len(piece.vertices) > 2] or missing
             if not missing:
                 moved = self._straightened(pieces)
                 missing = _folded(moved, pieces)
                 if not missing:
-                    return replace(moved, crease=self.crease, sites=sites)
+                    return replace(moved, crease=self.crease, seam=self.marked.seam, sites=sites)
             sites = self._nearer(sites, missing)
         raise MapError(_no_place(self.triangulation, missing[0]))
 
@@ -205,79 +202,6 @@ class _Placing:
             line = geometry.geodesic(x[0], x[-1], (way / way[-1])[1:-1])
             points[piece.vertices[1:-1]] = geometry.settle(geometry.act(geometry.inverse(frames[1:-1]), line))
         return _in_patches(replace(flat, points=points))
-
-    def _sites(self, size: int, unknowns: tuple[int, int, int]) -> Ints:
-        """Sites on the creases, then between them, about as many as the functions ask for."""
-        mesh = self.triangulation.polyhedron
-        density = site_density(self.triangulation, self.grading)
-        length = mesh.edge_lengths * (density[mesh.tail] + density[mesh.head]) / 2
-        at_vertex, on_edge, in_face = unknowns
-        each, more = at_vertex + 3 * on_edge + 2 * in_face, _EXTRA_AT_VERTEX + _EXTRA_EDGES * on_edge
-        area = np.linalg.norm(vector_areas(mesh), axis=1) @ (density[mesh.triangles].mean(axis=1) ** 2)
-        spacing = float(np.sqrt(each * area / size))
-        for _ in range(_TRIALS):
-            on, between = self._spread(length, spacing)
-            asked = (each + more) * len(on) + each * len(between)
-            if abs(asked / size - 1) < _ENOUGH:
-                break
-            spacing *= float(np.clip(np.sqrt(asked / size), 0.5, 2.0))
-        return np.unique(np.concatenate([on, between]))
-
-    def _spread(self, length: Floats, spacing: float) -> tuple[Ints, Ints]:
-        """Sites on and between creases at this spacing, between them the nearer, the nearer those on creases are."""
-        mesh = self.triangulation.polyhedron
-        graph, rim = edge_graph(mesh, length), np.unique(mesh.tail[self.crease])
-        on, apart = self._on_creases(length, spacing)
-        reach = dijkstra_forest(_with_hub(graph, on, apart / _SLOPE), np.array([len(mesh.vertices)])).distance[:-1]
-        local = np.minimum(spacing, _SLOPE * reach)
-        scaled = edge_graph(mesh, length * (spacing / local[mesh.tail] + spacing / local[mesh.head]) / 2)
-        hub = _with_hub(scaled, rim, np.full(len(rim), (1 - _APART) * spacing))
-        chosen = farthest_points(hub, len(mesh.vertices), first=len(mesh.vertices), radius=spacing).chosen[1:]
-        return on, chosen
-
-    def _on_creases(self, length: Floats, spacing: float) -> tuple[Ints, Floats]:
-        """The corners and ends of creases, and vertices between them at about this spacing, and how far apart they are.
-
-        Nearer together on short curves and where a curve turns.
-        """
-        mesh, apart = self.triangulation.polyhedron, np.full(len(self.triangulation.points), np.inf)
-        scale = _scales(mesh.edge_lengths, length, mesh.tail)
-        for chain in CreaseGraph.of(mesh, self.crease).chains(self.triangulation):
-            way = np.linalg.norm(np.diff(mesh.vertices[chain.vertices], axis=0), axis=1)
-            reached = np.concatenate([[0.0], np.cumsum(way * scale[chain.vertices[:-1]])])
-            least = 3 if chain.vertices[0] == chain.vertices[-1] else 1
-            count = max(least, round(reached[-1] / spacing), math.ceil(_turning(mesh.vertices[chain.vertices]) / _BEND))
-            wanted = np.arange(count + 1) * reached[-1] / count
-            site = chain.vertices[np.unique(np.abs(reached[:, None] - wanted).argmin(axis=0))]
-            apart[site] = np.minimum(apart[site], reached[-1] / count)
-        on = np.flatnonzero(np.isfinite(apart))
-        return on, np.minimum(apart[on], spacing)
-
-
-def _turning(x: Floats) -> float:
-    """The sum of the angles by which a curve (n, 3) turns at its inner vertices."""
-    way = np.diff(x, axis=0)
-    way /= np.maximum(np.linalg.norm(way, axis=1), np.finfo(float).tiny)[:, None]
-    turn = 2 * np.arcsin(np.minimum(np.linalg.norm(np.diff(way, axis=0), axis=1) / 2, 1.0))
-    return float(turn.sum())
-
-
-def _scales(edges: Floats, length: Floats, tail: Ints) -> Floats:
-    """The length of sites per length in space at the vertices."""
-    weight = np.bincount(tail, weights=edges)
-    return np.bincount(tail, weights=length) / np.maximum(weight, np.finfo(float).tiny)
-
-
-def _with_hub(graph: Graph, rim: Ints, length: Floats) -> Graph:
-    """The graph with one more vertex, joined to all of a rim by links of some lengths."""
-    count, degree = len(graph.start) - 1, np.diff(graph.start)
-    owner = np.concatenate([np.repeat(np.arange(count), degree), rim, np.full(len(rim), count)])
-    neighbour = np.concatenate([graph.neighbour, np.full(len(rim), count), rim])
-    lengths = np.concatenate([graph.length, length, length])
-    order = np.argsort(owner, kind="stable")
-    start = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=count + 1))]).astype(np.intp)
-    none = np.zeros(len(owner), dtype=np.intp)
-    return Graph(start, neighbour[order], lengths[order], none, none.astype(np.bool_))
 
 
 def _folded(moved: Triangulation, pieces: list[Chain]) -> list[Chain]:

@@ -103,6 +103,9 @@ def write(
     if mesh.corner_uv is not None and not keeps_textures(path, known, format):
         warnings.warn(f"{path}: this format holds no texture coordinates; left out", stacklevel=2)
         mesh = replace(mesh, corner_uv=None)
+    if mesh.marked is not None and not keeps_marks(path, known, format):
+        warnings.warn(f"{path}: this format holds no edges marked as sharp; left out", stacklevel=2)
+        mesh = replace(mesh, marked=None)
     _write_whole(path, _component(path, known, "writer", format, options), mesh)
 
 
@@ -147,6 +150,11 @@ def exports(path: Path, registry: Components) -> bool:
 def keeps_textures(path: Path, registry: Components, format: str | None = None) -> bool:
     """Whether the writer of a file keeps the texture coordinates of corners."""
     return registry.component("writer", component_name(path, registry, "writer", format)).textures
+
+
+def keeps_marks(path: Path, registry: Components, format: str | None = None) -> bool:
+    """Whether the writer of a file keeps edges that are marked as sharp."""
+    return registry.component("writer", component_name(path, registry, "writer", format)).marks
 
 
 def _mesh(given: object, path: Path) -> Polyhedron:

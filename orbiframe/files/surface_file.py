@@ -88,6 +88,7 @@ _OPTIONAL: dict[str, tuple[type, tuple[int | str, ...]]] = {
     "density": (np.float64, ("W",)),
     "crease": (np.bool_, ("I",)),
     "sites": (np.intp, ("S",)),
+    "seam": (np.bool_, ("I",)),
     "inside": (np.bool_, ("G1",)),
     "flip_halfedge": (np.intp, ("L", 2)),
     "flip_crossing": (np.float64, ("L", 2)),
@@ -269,7 +270,7 @@ def _map(arrays: Arrays, about: About, registry: Components) -> SurfaceMap:
     density = arrays.get("density")
     if density is not None:
         require(np.isfinite(density) & (density > 0), "density", "numbers are finite and positive")
-    marks = arrays.get("crease"), arrays.get("sites"), arrays.get("inside")
+    marks = arrays.get("crease"), arrays.get("sites"), arrays.get("inside"), arrays.get("seam")
     triangulation = Triangulation(orbifold, fine, *places, about["group"], about["weights"], density, *marks)
     require_map(triangulation)
     require_creases(triangulation)
@@ -367,6 +368,7 @@ def _optional(surface: OrbifoldSurface) -> dict[str, NDArray[Any] | None]:
         "crease": flat.crease,
         "sites": flat.sites,
         "inside": flat.inside,
+        "seam": flat.seam,
         **steps,
         **halved,
     }

@@ -190,6 +190,7 @@ def require_map(triangulation: Triangulation) -> None:
 def require_creases(triangulation: Triangulation) -> None:
     """Creases that are whole edges, and run along geodesics from site to site of the domain of the functions."""
     crease, sites, mesh = triangulation.crease, triangulation.sites, triangulation.polyhedron
+    _require_seams(triangulation)
     require((crease is None) == (sites is None), "sites", "there are sites if there are creases, and only then")
     if crease is None or sites is None:
         return
@@ -208,6 +209,13 @@ def require_creases(triangulation: Triangulation) -> None:
         crease_triangulation(triangulation)
     except OrbiframeError as error:
         raise BrokenLaw("sites", f"their Delaunay triangulation has the creases as edges; {error}") from error
+
+
+def _require_seams(triangulation: Triangulation) -> None:
+    seam, crease, twin = triangulation.seam, triangulation.crease, triangulation.polyhedron.twin
+    if seam is not None:
+        require(seam[twin] == seam, "seam", "both halfedges of an edge are on a seam, or none is")
+        require(~seam if crease is None else crease | ~seam, "seam", "seams are among the creases")
 
 
 def require_inside(triangulation: Triangulation, refinement: Bisection) -> None:

@@ -1,5 +1,6 @@
 """The public names of orbiframe.fitting, each with the module it lives in."""
 
+from .boundary_option import add_boundary as add_boundary
 from .config import Config as Config
 from .config_text import (
     Overrides as Overrides,

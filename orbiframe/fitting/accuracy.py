@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from orbiframe.errors import FitError
 from orbiframe.functions.basis import DifferentiableBasis
-from orbiframe.functions.feet import foot_points, foot_step
+from orbiframe.functions.feet import feet_of, foot_step
 from orbiframe.functions.samples import Samples, places
 from orbiframe.functions.smooth_samples import at_samples
 from orbiframe.meshes.edge_paths import first_largest
@@ -61,7 +61,8 @@ class Accuracy(NamedTuple):
 
     normals: the root mean square of the angle between normals of facets and of the surface at the feet, in degrees;
     at_vertices: (V,), the distances of the vertices of the refined mesh to the surface: where functions are missing;
-    border: how well the boundary of the surface is that of the mesh, None where there is none.
+    border: how well the boundary of the surface is that of the mesh, None where there is none; arcs: the distances of
+    points of the arcs that bent facets beside creases stand for, None where they are not asked for.
     """
 
     to_surface: Distances
@@ -70,15 +71,17 @@ class Accuracy(NamedTuple):
     normals: float
     at_vertices: Floats
     border: Border | None = None
+    arcs: Distances | None = None
 
     def against(self, smooth: bool) -> tuple[float, float]:
-        """Root mean square and maximum of the distance to what the mesh means: its vertices, or both ways."""
+        """Root mean square and maximum of the distance to what the mesh means: vertices, arcs, or facets both ways."""
         parts = (self.vertices,) if smooth else (self.to_surface, self.to_mesh)
+        parts = parts if self.arcs is None else (self.arcs,)
         return max(part.rms for part in parts), max(part.max for part in parts)
 
 
-def accuracy_of(surface: OrbifoldSurface) -> Accuracy:
-    """The accuracy of a surface for a mesh of unit size.
+def accuracy_of(surface: OrbifoldSurface, arcs: Samples | None = None) -> Accuracy:
+    """The accuracy of a surface for a mesh of unit size; arcs: what its bent facets stand for, if that is to be told.
 
     Samples of the mesh go to their foot points on the surface, and the points of the surface over them to the nearest
     point of the mesh; a surface without derivatives is measured at the parameters of the samples. Raises FitError for a
@@ -104,6 +107,7 @@ def accuracy_of(surface: OrbifoldSurface) -> Accuracy:
         _tilt(normals[count:], vector_areas(flat)[own[count:] - len(flat.vertices)]),
         at_vertices,
         None if inside is None else border_of(surface),
+        None if arcs is None else _of_arcs(surface, arcs),
     )
 
 
@@ -113,6 +117,13 @@ def stray_of(surface: OrbifoldSurface, accuracy: Accuracy) -> float:
     size = np.sqrt(2 * np.linalg.norm(vector_areas(refinement.facets), axis=1))
     there = at_samples(surface.triangulation, refinement, size)[: len(accuracy.at_vertices)]
     return float((accuracy.at_vertices / np.maximum(there, np.finfo(float).tiny)).max())
+
+
+def _of_arcs(surface: OrbifoldSurface, samples: Samples) -> Distances:
+    """The distances of samples from a surface, each counted by the area that it stands for."""
+    counted = samples.take(np.flatnonzero(samples.shares > 0))
+    away = _seen(surface, replace(counted, weights=counted.shares), 0)[1]
+    return _distances(away, counted.shares, counted.values)
 
 
 def _seen(surface: OrbifoldSurface, samples: Samples, given: int) -> tuple[Floats, Floats, Floats]:
@@ -139,7 +150,7 @@ def _seen(surface: OrbifoldSurface, samples: Samples, given: int) -> tuple[Float
     far = (np.linalg.norm(way, axis=1) > _NEAR * spacing) | (away >= np.quantile(away, 1 - _WORST))
     chosen = np.append(np.arange(given), np.flatnonzero(far))
     start = samples.take(chosen)
-    away[chosen] = foot_points(basis, coefficients, start.points, start.values, spacing)[1]
+    away[chosen] = feet_of(basis, coefficients, start.points, start.values, spacing, jets=jets[:, chosen]).distance
     return jets[0], away, normals
 
 

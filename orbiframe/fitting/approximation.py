@@ -15,7 +15,7 @@ from orbiframe.fitting.config import Config
 from orbiframe.fitting.fixed_points import with_fixed
 from orbiframe.fitting.made import made, made_coefficients
 from orbiframe.fitting.mapping import Mapped, Mapping
-from orbiframe.fitting.meaning import FACETS, Meaning, meaning_of
+from orbiframe.fitting.meaning import FACETS, Meaning, facets_show, meaning_of
 from orbiframe.fitting.size import LEAST_SIZE, default_size, size_needed
 from orbiframe.fitting.stages import Stages
 from orbiframe.functions.basis import Basis
@@ -72,13 +72,14 @@ class Approximations:
         """The surface of so many functions; of more if they cannot follow the map and no number is asked for."""
         mapped = self.mapping.for_size(size)
         mapped = mapped if density is None else mapped.with_density(density.on(mapped.refinement))
-        mapped = self._creased(mapped, size)
+        mapped = self._creased(mapped, size, 0 if self._given_size or density else _LARGEST_SIZE)
         energy = girth(mapped.triangulation).energy
         basis = self._basis(mapped, size)
         needed = size_needed(basis, energy)
         if needed > basis.size and self._given_size is None:
             return self.of_size(max(needed, basis.size + 100), density)
-        meaning = meaning_of(self.mapping.own_facets, self.config.data.means, size, self.config.data.creases)
+        sharp = None if self.config.data.creases is None else self.mapping.sharp(self.mapping.own_facets)
+        meaning = meaning_of(self.mapping.own_facets, self.config.data.means, size, sharp)
         notes = () if needed <= basis.size else (too_few(basis.size, needed),)
         try:
             found = self._meant(mapped, basis, meaning, size)
@@ -93,12 +94,14 @@ class Approximations:
 
     def _meant(self, mapped: Mapped, basis: Basis, meaning: Meaning, size: int) -> Approximation:
         """The surface of a mesh with this meaning."""
-        if meaning.smooth and self.config.data.lift and self.config.data.creases is None:
+        if self._lifts(meaning, size):
             mapped = self._lifted(mapped, basis, meaning)
             basis = self._basis(mapped, size)
         samples, surface = self._surface(mapped, basis, meaning, self._fitter(), self.config)
         surface = self._moved(surface)
-        return Approximation(surface, mapped, samples, meaning, self.stages("error", accuracy_of, surface), 0.0, ())
+        arcs = samples if meaning.arcs(mapped.triangulation) else None
+        accuracy = self.stages("error", accuracy_of, surface, arcs)
+        return Approximation(surface, mapped, samples, meaning, accuracy, 0.0, ())
 
     def _stray(self, found: Approximation) -> float:
         """By how many of its sizes the surface leaves a facet, where the mesh may mean something less smooth."""
@@ -106,6 +109,11 @@ class Approximations:
         if data.means != "auto" or data.creases is not None or data.fixed or self.config.output.moved:
             return 0.0
         return 0.0 if found.meaning.name == FACETS else stray_of(found.surface, found.accuracy)
+
+    def _lifts(self, meaning: Meaning, size: int) -> bool:
+        """Whether the mesh is mapped again without its facets: where it is smooth, and so coarse that they show."""
+        data = self.config.data
+        return meaning.smooth and data.lift and data.creases is None and facets_show(self.mapping.own_facets, size)
 
     def _accurate(self, rms: float, largest: float) -> Approximation:
         """More functions, and more of them where the error is, until the surface is near enough."""
@@ -135,12 +143,12 @@ class Approximations:
         chi = self.mapping.surface_type.euler_characteristic
         return default_size(energy, len(self.mapping.triangles.vertices), chi)
 
-    def _creased(self, mapped: Mapped, size: int) -> Mapped:
+    def _creased(self, mapped: Mapped, size: int, most: int) -> Mapped:
         """The map with creases, if they are to stay."""
         if self.config.data.creases is None:
             return mapped
         unknowns = self.stages.registry.load("basis", self.config.basis.name).crease_unknowns  # type: ignore[attr-defined]
-        creased: Mapped = self.stages("creases", self.mapping.creased, mapped, size, unknowns)
+        creased: Mapped = self.stages("creases", self.mapping.creased, mapped, size, unknowns, most)
         return creased
 
     def _basis(self, mapped: Mapped, size: int) -> Basis:

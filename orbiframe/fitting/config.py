@@ -60,17 +60,18 @@ class Data:
     """What the mesh means.
 
     means: "facets", the polyhedron is the truth; "smooth", its vertices lie on a smooth surface; "semi-smooth", so they
-    do where facets are curved; "auto" decides by its bends. lift: whether a smooth mesh is mapped again after it has
-    been lifted onto its first surface. noise: the root mean square error of each coordinate of the vertices of a smooth
-    mesh, relative to the diagonal of the bounding box; None: found from the vertices. creases: edges that bend by so
-    many degrees or more stay sharp; None: none does. fixed: points in space (x, y, z) that the surface passes through,
-    or (x, y, z, nx, ny, nz) with a normal that it has there, up to the sign; each at the nearest point of the mesh.
+    do where facets are curved; "auto" decides by its bends. lift: whether a smooth mesh whose facets show is mapped
+    again after it has been lifted onto its first surface. noise: the root mean square error of each coordinate of the
+    vertices of a smooth mesh, relative to the diagonal of the bounding box; None: found from the vertices. creases:
+    edges that bend by so many degrees or more stay sharp, or "marked", those that the file marks; None: none does.
+    fixed: points in space (x, y, z) that the surface passes through, or (x, y, z, nx, ny, nz) with a normal that it has
+    there, up to the sign; each at the nearest point of the mesh.
     """
 
     means: Literal["auto", "smooth", "semi-smooth", "facets"] = "auto"
     lift: bool = True
     noise: Annotated[float, Gt(0)] | None = None
-    creases: Annotated[float, Gt(0), Le(180)] | None = None
+    creases: Annotated[float, Gt(0), Le(180)] | Literal["marked"] | None = None
     fixed: tuple[Fixed, ...] = ()
 
 
@@ -88,6 +89,7 @@ STEPS = {
     "marking": ("marker", "method", "auto"),
     "map": ("parametrizer", "method", "auto"),
     "shape": ("optimizer", "method", "none"),
+    "solver": ("solver", "name", "auto"),
     "basis": ("basis", "name", "gaussian"),
     "fitter": ("fitter", "name", "sliding"),
 }
@@ -103,7 +105,9 @@ class Config:
     mesh: the reader, "auto" by the file suffix; geometry: the plane X, "auto" by the Euler characteristic; group:
     "mesh" takes the group from the mesh; marking: cuts the mesh open for a named group; map: "auto" takes the
     parametrizer that fits the geometry and the group; shape: changes the map so that faces become regular, "none"
-    leaves it as it is; basis; fitter. boundary: how a mesh with a boundary is closed for the map, "error" if it is not.
+    leaves it as it is; solver: what solves the equations of
+    maps, "auto" what the parametrizer does; basis; fitter. boundary: how a mesh with a boundary is closed for the map,
+    "error" if it is not.
     like: a saved surface whose map is taken over. places: where each "table.key" was written, for error messages.
     NAMES: of all tables.
 
@@ -199,6 +203,11 @@ class Config:
     def shape(self) -> Step:
         """The optimizer."""
         return self.steps["shape"]
+
+    @property
+    def solver(self) -> Step:
+        """What solves the equations of maps."""
+        return self.steps["solver"]
 
     @property
     def basis(self) -> Step:

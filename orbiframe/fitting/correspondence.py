@@ -72,10 +72,10 @@ class Correspondence:
 
     def creased(self, mapped: Triangulation, sharp: NDArray[np.bool_], size: int) -> Triangulation | None:
         """The map of the same triangles with the creases and sites of the old one; None where they are others."""
-        crease, sites = self.triangulation.crease, self.triangulation.sites
+        crease, seam, sites = self.triangulation.crease, self.triangulation.seam, self.triangulation.sites
         if crease is None or size != self.size or mapped.points is not self.triangulation.points:
             return None
-        return replace(mapped, crease=crease, sites=sites) if np.array_equal(crease, sharp) else None
+        return replace(mapped, crease=crease, seam=seam, sites=sites) if np.array_equal(crease, sharp) else None
 
     @cached_property
     def own_mesh(self) -> Polyhedron:
@@ -120,7 +120,7 @@ class Correspondence:
     @property
     def _plain(self) -> Triangulation:
         """The map without creases."""
-        return replace(self.triangulation, crease=None, sites=None)
+        return replace(self.triangulation, crease=None, seam=None, sites=None)
 
     def serves(self, triangles: Polyhedron, least: int) -> bool:
         """Whether triangles are the old ones, and refined to about so many vertices at least."""

@@ -11,28 +11,37 @@ from numpy.typing import NDArray
 from orbiframe.meshes.nearest_points import NearestPoints
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.self_intersections import self_intersecting
-from orbiframe.surfaces.folds import folded_share
+from orbiframe.surfaces.folds import Folds, folds
 from orbiframe.surfaces.surface import OrbifoldSurface
 
 _FOLD = 1e-6
 
 
 class Inspection(NamedTuple):
-    """The share of the area that is folded over; triangles that pass through others, (n,), in the mesh and in the
+    """The folds, as a share of the area; triangles that pass through others, (n,), in the mesh and in the
     output; the volumes within both, relative to that of the mesh, None where there is none; away: the largest distance
     of a vertex of the output to the mesh, in diagonals.
     """
 
-    folded: float
+    folds: Folds
     in_mesh: NDArray[np.intp]
     in_output: NDArray[np.intp]
     volume: float | None
     away: float
 
+    @property
+    def folded(self) -> float:
+        """The share of the area that is folded over."""
+        return self.folds.share
+
     def notes(self, output: Polyhedron) -> Iterator[str]:
         """Sentences for what a user should look at."""
         if self.folded > _FOLD:
-            yield f"the surface folds over on {self.folded:.1e} of its area; more functions help (option size)"
+            where = ", ".join(f"{x:.6g}" for x in self.folds.place)
+            yield (
+                f"the surface folds over on {self.folded:.1e} of its area, most near ({where}); more functions help "
+                "(option size)"
+            )
         if len(self.in_output) and not len(self.in_mesh):
             place = output.vertices[output.triangles[self.in_output[0]]].mean(axis=0)
             where = ", ".join(f"{x:.6g}" for x in place)
@@ -52,7 +61,7 @@ def inspected(surface: OrbifoldSurface, output: Polyhedron, bisected: bool) -> I
     ratio = outside / inside if closed and not output.same.any() and abs(inside) > 0 else None
     crossing = self_intersecting(mesh), self_intersecting(output)
     away = float(NearestPoints(mesh).distance(placed.vertices).max())
-    return Inspection(folded_share(surface, fine), *crossing, ratio, away)
+    return Inspection(folds(surface, fine), *crossing, ratio, away)
 
 
 def _volume(mesh: Polyhedron) -> float:

@@ -24,6 +24,7 @@ TABLE_MEANINGS = {
     "map": "The map from the mesh to X/H.",
     "shape": "Only where an optimizer is named: the map is changed so that faces become regular polygons in X/H, "
     "as far as the surface allows.",
+    "solver": "What solves the sparse equations of the map.",
     "data": "What the mesh means.",
     "basis": "The functions.",
     "fitter": "How their coefficients are found.",
@@ -38,6 +39,8 @@ SELECTOR_MEANINGS = {
     "map": "name of a parametrizer; auto takes sphere for χ > 0 and harmonic for χ ≤ 0, or equivariant if the "
     "group has a name",
     "shape": "name of an optimizer, such as regular-faces; none: the map stays as it is",
+    "solver": "name of a solver; auto: METIS orders the edges of a mesh once for all its equations, SuperLU factors "
+    "them",
     "basis": "name of a basis",
     "fitter": "name of a fitter: sliding, least-squares for the linear fit that sliding begins with, or "
     "smoothing, whose fairing cross-validation finds",
@@ -56,11 +59,13 @@ _RESULT_MEANINGS = {
     "data.means": "what the mesh means: facets, the polyhedron is the truth; smooth, its vertices lie on a smooth"
     " surface; semi-smooth, so they do where facets are curved; auto decides by the share of its "
     "bending that lies in edges of more than 40°: smooth up to 20 %, facets from 48 % on",
-    "data.lift": "a smooth mesh is mapped a second time, with its vertices lifted onto a first surface",
+    "data.lift": "a smooth mesh is mapped a second time, with its vertices lifted onto a first surface, unless its "
+    "edges are shorter than 0.3 of the distance of functions, so that no facet shows",
     "data.noise": "root mean square error of each coordinate of the vertices of a smooth mesh, relative to the "
     "diagonal of the bounding box; if not given, the fairing is found from the vertices by cross-"
     "validation",
-    "data.creases": "edges of the mesh that bend by so many degrees or more stay sharp; if not given, the surface is "
+    "data.creases": "edges of the mesh that bend by so many degrees or more stay sharp, or 'marked': those that its "
+    "file marks; if not given, the surface is "
     "smooth everywhere",
     "data.fixed": "points that the surface passes through exactly: lists of x, y, z, or of x, y, z and a normal nx, "
     "ny, nz that it has there, in lengths of the mesh; each at the nearest point of the mesh",

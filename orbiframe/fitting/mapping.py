@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from orbiframe.components.geometry_names import geometry_name
 from orbiframe.components.options import place_of
 from orbiframe.delaunay.crease_domain import creased
+from orbiframe.delaunay.crease_sites import Asked
 from orbiframe.errors import ConfigError, MapError
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.content import content_key, mesh_key, source_key
@@ -25,11 +26,14 @@ from orbiframe.groups.marked_group import MarkedGroup
 from orbiframe.groups.marking import Marking
 from orbiframe.meshes.bending import bending, sharp_edges
 from orbiframe.meshes.bisection import Bisection, affordable_length, bisected, even_edge_length, triangles_made
+from orbiframe.meshes.curving import Curving
 from orbiframe.meshes.edge_log import EdgeLog
+from orbiframe.meshes.fine_marks import fine_largest, fine_marks
 from orbiframe.meshes.flat_flips import flat_flips
 from orbiframe.meshes.intrinsic_refinement import intrinsic_refinement
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.regular_triangles import regular_triangles
+from orbiframe.meshes.seams import seams
 from orbiframe.meshes.submesh import submesh
 from orbiframe.meshes.surface_type import SurfaceType
 from orbiframe.planes.geometry import Geometry
@@ -37,6 +41,7 @@ from orbiframe.plugin import DEFAULT_MARKER
 from orbiframe.triangulations.beyond import density_beyond
 from orbiframe.triangulations.face_shapes import FaceShapes, face_shapes
 from orbiframe.triangulations.triangulation import Triangulation
+from orbiframe.workers.solving import solving_by
 
 PARAMETRIZER = {"s2": "sphere", "e2": "harmonic", "h2": "harmonic"}
 NAMED_PARAMETRIZER = {"s2": "sphere", "e2": "equivariant", "h2": "equivariant"}
@@ -148,24 +153,46 @@ class Mapping:
             self.maps[key] = Mapped(found.refinement, first, first, found)
         return self.maps[key]
 
-    def creased(self, mapped: Mapped, size: int, unknowns: tuple[int, int, int]) -> Mapped:
-        """The map with creases where the mesh is sharp, for about `size` functions; see `data.creases`."""
-        sharp = self._sharp(mapped.refinement.polyhedron)
-        kept = None if self.like is None else self.like.creased(mapped.triangulation, sharp, size)
-        found = creased(mapped.triangulation, sharp, size, unknowns) if kept is None else kept
+    def creased(self, mapped: Mapped, size: int, unknowns: tuple[int, int, int], most: int) -> Mapped:
+        """The map with creases where the mesh is sharp, and seams where plane faces end; see `data.creases`.
+
+        For about `size` functions, or up to `most` where curved parts ask for them. unknowns: of which so many belong
+        to a vertex, an edge and a triangle of the domain.
+        """
+        refinement = mapped.refinement
+        sharp = self.sharp(refinement.facets)
+        soft = seams(refinement.facets, sharp)
+        crease, seam = fine_marks(refinement, sharp | soft), fine_marks(refinement, soft) if soft.any() else None
+        kept = None if self.like is None else self.like.creased(mapped.triangulation, crease, size)
+        asked = Asked(size, unknowns, fine_largest(refinement, Curving.of(refinement.facets, sharp).curvatures), most)
+        found = creased(mapped.triangulation, crease, asked, seam) if kept is None else kept
         unshaped = mapped.first.points is mapped.triangulation.points
         return mapped._replace(first=found if unshaped else mapped.first, triangulation=found)
 
-    def _sharp(self, mesh: Polyhedron) -> NDArray[np.bool_]:
-        """The creases of the refined mesh. Raises ConfigError where there is none."""
+    def sharp(self, mesh: Polyhedron) -> NDArray[np.bool_]:
+        """The creases of the triangles, or of the facets, (H,). Raises ConfigError where there is none."""
         degrees = self.config.data.creases
         assert degrees is not None
+        if degrees == "marked":
+            return self._marked(mesh)
         found = sharp_edges(mesh, degrees)
         if not found.any():
             sharpest = float(np.degrees(bending(mesh).angle.max()))
             raise ConfigError(
                 f"{place_of('data.creases', self.config.places)}no edge of the mesh bends by {degrees:g}° or more (the "
                 f"sharpest by {sharpest:.1f}°), so that there is no crease; take a smaller angle, or leave it out"
+            )
+        return found
+
+    def _marked(self, mesh: Polyhedron) -> NDArray[np.bool_]:
+        marked = self.triangles.marked
+        found = None if marked is None else marked.among(mesh.tail, mesh.head)
+        if found is None or not found.any():
+            known = "none is" if marked is None else f"of {len(marked.ends)} marks none belongs to an edge of a face"
+            raise ConfigError(
+                f"{place_of('data.creases', self.config.places)}no edge of the mesh is marked as sharp ({known}); "
+                "marks are an element 'edge' with vertex1, vertex2 and crease in PLY, and lines "
+                "'t crease 2/1/0 v w sharpness' in OBJ; or give an angle"
             )
         return found
 
@@ -198,12 +225,20 @@ class Mapping:
             lambda: self._key("map", name, parametrizer, mesh_key(mesh)),
             mesh,
             geometry,
-            lambda: made(registry, "parametrizer", name, parametrizer(mesh, geometry, group), Triangulation),
+            lambda: made(
+                registry, "parametrizer", name, self._solved(parametrizer, mesh, geometry, group), Triangulation
+            ),
         )
         remedy = "map.method = 'auto'" + ("" if group is None else " or group.method = 'mesh'")
         _require_embedding(triangulation, f"the map of '{name}'", remedy)
         first = self._bounded(refinement, triangulation)
         return Mapped(refinement, first, self._bounded(refinement, self._shaped(refinement, first)))
+
+    def _solved(self, parametrizer: Callable[..., object], *given: object) -> object:
+        """What a parametrizer makes, with the solver that is chosen."""
+        step = self.config.solver
+        with solving_by(None if step.open else self.config.component("solver", self.stages.registry)):
+            return parametrizer(*given)
 
     def _bounded(self, refinement: Bisection, triangulation: Triangulation) -> Triangulation:
         """The map with the triangles marked that belong to the mesh, and with fewer functions on the others."""
@@ -247,7 +282,8 @@ class Mapping:
 
     def _key(self, table: str, name: str, maker: Callable[..., Triangulation], *content: str) -> str:
         """The content key of a map: the mesh, the component with its options and source, the group."""
-        steps = {other: self.config.steps[other] for other in (table, "geometry", "group", "marking")}
+        solver = () if self.config.solver.open else ("solver",)
+        steps = {other: self.config.steps[other] for other in (table, "geometry", "group", "marking", *solver)}
         chosen = {other: (step.name, dict(step.options)) for other, step in steps.items()}
         return content_key({"component": (table, name), "steps": chosen, "source": source_key(maker), "of": content})
 

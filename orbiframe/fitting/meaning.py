@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from orbiframe.functions.border_samples import with_border
 from orbiframe.functions.samples import Samples, coordinate_samples
 from orbiframe.functions.samples_of_sides import crease_samples
 from orbiframe.functions.smooth_samples import inside_facets, semi_smooth_samples, vertex_samples
-from orbiframe.meshes.bending import bending, sharp_edges
+from orbiframe.meshes.bending import bending
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.even_bends import even_share
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -27,6 +30,8 @@ MEANINGS = ("auto", SMOOTH, SEMI_SMOOTH, FACETS)
 _SMOOTH, _SHARP, _EVEN = 0.20, 0.48, 0.02
 # Beside creases nothing bends if no more than this share does.
 _FLAT = 1e-6
+# Facets no longer than this share of the distance of functions leave no mark in a fit.
+_SEEN = 0.3
 # So many samples of facets are enough; a mesh of needles would have many more than functions can tell apart.
 _LEAST_SAMPLES, _SAMPLES_PER_FUNCTION = 250_000, 100
 
@@ -51,6 +56,10 @@ class Meaning(NamedTuple):
             reason=f"{self.reason}, but as {self.name} the surface leaves a facet by {stray:.1f} times its size",
         )
 
+    def arcs(self, triangulation: Triangulation) -> bool:
+        """Whether bent facets stand for arcs over them, and flat ones for themselves."""
+        return triangulation.crease is not None and self.name == SEMI_SMOOTH
+
     def samples(
         self, triangulation: Triangulation, refinement: Bisection, size: int, noise: float | None = None
     ) -> Samples:
@@ -74,18 +83,19 @@ class Meaning(NamedTuple):
         return semi_smooth_samples(triangulation, refinement, spacing)
 
 
-def meaning_of(mesh: Polyhedron, asked: str, size: int, creases: float | None = None) -> Meaning:
+def meaning_of(mesh: Polyhedron, asked: str, size: int, creases: NDArray[np.bool_] | None = None) -> Meaning:
     """What a triangle mesh stands for, as asked or found from the bends of its edges.
 
     size: the number of functions; where it is less than that of the vertices, those say where the facets are; creases:
-    from how many degrees on edges stay sharp: then what bends less is curved.
+    (H,), the edges that stay sharp: then what bends at others is curved.
     """
-    share = bending(mesh).share
+    bends = bending(mesh)
+    share = bends.share
     if asked != "auto":
         return Meaning(asked, share, "as asked")
     if creases is not None:
         return _beside_creases(mesh, share, creases)
-    if mesh.edge_lengths @ bending(mesh).angle <= _FLAT * mesh.edge_lengths.sum():
+    if mesh.edge_lengths @ bends.angle <= _FLAT * mesh.edge_lengths.sum():
         return Meaning(FACETS, share, "it is flat")
     percent = f"{100 * share:.0f} % of its bending lies in edges of more than 40°"
     if share <= _SMOOTH:
@@ -99,9 +109,16 @@ def meaning_of(mesh: Polyhedron, asked: str, size: int, creases: float | None = 
     return Meaning(SEMI_SMOOTH, share, percent)
 
 
-def _beside_creases(mesh: Polyhedron, share: float, creases: float) -> Meaning:
+def facets_show(mesh: Polyhedron, size: int) -> bool:
+    """Whether the facets of a mesh are so long that so many functions would see them: their edges, mean on the area."""
+    square = mesh.edge_lengths**2
+    area = float(np.linalg.norm(vector_areas(mesh), axis=1).sum())
+    return float(square @ square) > _SEEN**2 * area / size * float(square.sum())
+
+
+def _beside_creases(mesh: Polyhedron, share: float, creases: NDArray[np.bool_]) -> Meaning:
     """Facets where nothing bends but creases; otherwise what bends is curved, and what does not is flat."""
     amount = mesh.edge_lengths * bending(mesh).angle
-    rest = float(amount[~sharp_edges(mesh, creases)].sum() / max(amount.sum(), 1e-300))
-    reason = f"{100 * (1 - rest):.0f} % of its bending lies in creases of {creases:g}° or more"
+    rest = float(amount[~creases].sum() / max(amount.sum(), 1e-300))
+    reason = f"{100 * (1 - rest):.0f} % of its bending lies in creases"
     return Meaning(SEMI_SMOOTH if rest > _FLAT else FACETS, share, reason)

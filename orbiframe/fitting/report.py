@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.fitting.accuracy import APART, PLACES, Accuracy, Place
+from orbiframe.fitting.accuracy import APART, PLACES, Accuracy, Distances, Place
 from orbiframe.fitting.approximation import Approximation
 from orbiframe.fitting.config import Config
 from orbiframe.fitting.inspection import Inspection
@@ -150,19 +150,16 @@ def _distances_report(accuracy: Accuracy, surface: OrbifoldSurface, of_output: f
         "surface_to_mesh": accuracy.to_mesh,
         "vertices_to_surface": accuracy.vertices,
     }
-    return {
-        name: {
-            "rms": part.rms,
-            "mean": part.mean,
-            "max": part.max,
-            "place": _in_space(surface, part.place),
-        }
-        for name, part in named.items()
-    } | {
+    return {name: _distances_part(part, surface) for name, part in named.items()} | {
+        "arcs_to_surface": None if accuracy.arcs is None else _distances_part(accuracy.arcs, surface),
         "hausdorff": max(accuracy.to_surface.max, accuracy.to_mesh.max, of_output),
         "normals": accuracy.normals,
         "worst": _worst(accuracy, surface),
     }
+
+
+def _distances_part(part: Distances, surface: OrbifoldSurface) -> dict[str, Any]:
+    return {"rms": part.rms, "mean": part.mean, "max": part.max, "place": _in_space(surface, part.place)}
 
 
 def _worst(accuracy: Accuracy, surface: OrbifoldSurface) -> list[dict[str, Any]]:

@@ -6,7 +6,13 @@ from .basis import (
     PiecewiseBasis as PiecewiseBasis,
     lifted as lifted,
 )
-from .feet import around as around, foot_points as foot_points, foot_step as foot_step, moved as moved
+from .feet import (
+    around as around,
+    feet_of as feet_of,
+    foot_points as foot_points,
+    foot_step as foot_step,
+    moved as moved,
+)
 from .fitter import (
     Fitter as Fitter,
     PreparedFitter as PreparedFitter,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -76,6 +78,14 @@ def moved(orbifold: Orbifold, points: Points, step: Floats) -> Points:
     return orbifold.settled(Points(points.patch, x))
 
 
+class FootPoints(NamedTuple):
+    """The feet of targets, their distances (n,), and the jets of the surface there, (6, n, 3)."""
+
+    points: Points
+    distance: Floats
+    jets: Floats
+
+
 def foot_points(
     basis: DifferentiableBasis, coefficients: Floats, points: Points, targets: Floats, longest: float, steps: int = 4
 ) -> tuple[Points, Floats]:
@@ -85,24 +95,42 @@ def foot_points(
     tried, and a quarter of it. Targets that are still far may have their foot beyond a ridge: they look for it round
     about, and begin anew.
     """
-    found = _Search(
-        basis, coefficients, Points(np.array(points.patch), np.array(points.x)), np.asarray(targets), longest
-    )
+    return feet_of(basis, coefficients, points, targets, longest, steps)[:2]
+
+
+def feet_of(
+    basis: DifferentiableBasis,
+    coefficients: Floats,
+    points: Points,
+    targets: Floats,
+    longest: float,
+    steps: int = 4,
+    jets: Floats | None = None,
+) -> FootPoints:
+    """The same with jets; jets: (6, n, 3), those at the starting points where they are known already."""
+    begin = Points(np.array(points.patch), np.array(points.x))
+    found = _Search(basis, coefficients, begin, np.asarray(targets), longest, jets)
     found.descend(np.arange(len(targets)), steps)
     far = np.flatnonzero(found.distance > _FAR * longest)
     found.descend(found.elsewhere(far), steps)
-    return found.points, found.distance
+    return FootPoints(found.points, found.distance, found.jets)
 
 
 class _Search:
     """Points on their way to the feet of targets; `points`, `jets` and `distance` change."""
 
     def __init__(
-        self, basis: DifferentiableBasis, coefficients: Floats, points: Points, targets: Floats, longest: float
+        self,
+        basis: DifferentiableBasis,
+        coefficients: Floats,
+        points: Points,
+        targets: Floats,
+        longest: float,
+        jets: Floats | None = None,
     ) -> None:
         self.basis, self.coefficients, self.targets, self.longest = basis, coefficients, targets, longest
         self.points = points
-        self.jets = basis.jets(points, coefficients, 2)
+        self.jets = basis.jets(points, coefficients, 2) if jets is None else jets.copy()
         self.distance = np.linalg.norm(targets - self.jets[0], axis=1)
 
     def descend(self, active: Ints, steps: int) -> None:

@@ -84,8 +84,9 @@ def _blocks(lifted: LiftedCentres, points: Points) -> Iterator[tuple[Images, Int
 
 def _turned(pairs: Pairs, turn: Floats) -> Pairs:
     """The same pairs with slopes along the frames of the points as they were given."""
-    row = np.repeat(pairs.rows, np.diff(pairs.start))
-    return replace(pairs, slope=np.einsum("pi,pij->pj", pairs.slope, turn[row]))
+    slope = np.empty_like(pairs.slope)
+    _turn(pairs.rows, pairs.start, pairs.slope, turn, slope)
+    return replace(pairs, slope=slope)
 
 
 def _pairs_of_block(geometry: Geometry, images: Images, support: Floats, rows: Ints, x: Floats, slopes: bool) -> Pairs:
@@ -105,7 +106,7 @@ def _pairs_of_block(geometry: Geometry, images: Images, support: Floats, rows: I
     search(start[:-1].copy(), image, versine, True)
     slope = np.zeros((0, 2))
     if slopes:
-        slope = _slopes(curvature, x, np.ascontiguousarray(geometry.frame(x)), start, images.x[image])
+        slope = _slopes(curvature, x, np.ascontiguousarray(geometry.frame(x)), start, image, images.x)
     return Pairs(rows, start, images.column[image], versine, slope, tests)
 
 
@@ -216,14 +217,26 @@ def _search(tree, images, support, cursor, found, versine, fill):  # type: ignor
 
 
 @compiled
-def _slopes(curvature, x, frame, start, images):  # type: ignore[no-untyped-def]
+def _slopes(curvature, x, frame, start, image, images):  # type: ignore[no-untyped-def]
     """D_u c = -<u, m - x> for the unit tangents u of the frame at x, since <u, x> = 0; the difference is exact."""
-    slope = np.empty((len(images), 2))
+    slope = np.empty((len(image), 2))
     for i in range(len(x)):
+        x0, x1, x2 = x[i, 0], x[i, 1], x[i, 2]
         for k in range(start[i], start[i + 1]):
-            v0, v1, v2 = images[k, 0] - x[i, 0], images[k, 1] - x[i, 1], images[k, 2] - x[i, 2]
+            m0, m1, m2 = images[image[k], 0], images[image[k], 1], images[image[k], 2]
+            v0, v1, v2 = m0 - x0, m1 - x1, m2 - x2
             if curvature < 0:
-                v0 = (v1 * (images[k, 1] + x[i, 1]) + v2 * (images[k, 2] + x[i, 2])) / (images[k, 0] + x[i, 0])
+                v0 = (v1 * (m1 + x1) + v2 * (m2 + x2)) / (m0 + x0)
             for a in range(2):
                 slope[k, a] = -(curvature * frame[i, 0, a] * v0 + frame[i, 1, a] * v1 + frame[i, 2, a] * v2)
     return slope
+
+
+@compiled(arrays=False)
+def _turn(rows, start, slope, turn, out):  # type: ignore[no-untyped-def]
+    """The slopes of each row times the matrix of its point."""
+    for i in range(len(rows)):
+        t = turn[rows[i]]
+        for k in range(start[i], start[i + 1]):
+            u, v = slope[k, 0], slope[k, 1]
+            out[k, 0], out[k, 1] = u * t[0, 0] + v * t[1, 0], u * t[0, 1] + v * t[1, 1]

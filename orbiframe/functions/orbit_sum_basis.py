@@ -45,6 +45,11 @@ class OrbitSumBasis(DifferentiableBasis):
     def profile(self, t: Floats) -> tuple[Floats, ...]:
         """f, f' and f'' at t >= 0, (n,) each: positive before 1, zero from 1 on; f''' too, for jets of order 3."""
 
+    def profile_jet(self, t: Floats, order: int) -> tuple[Floats, ...]:
+        """f at t and its derivatives up to this order, at least; what `profile` gives unless a basis knows better."""
+        del order
+        return self.profile(t)
+
     def jet_matrices(self, points: Points, order: int) -> list[csr_array]:
         """See `DifferentiableBasis`. Raises FitError at a point that no function reaches.
 
@@ -96,8 +101,10 @@ class OrbitSumBasis(DifferentiableBasis):
         return in_blocks(self._lifted, points, lambda pairs: task(self._block(pairs, order)), slopes=order > 0)
 
     def _block(self, pairs: Pairs, order: int) -> _Block:
-        f, df, ddf, *third = self.profile(pairs.versine / self.support[pairs.column])
-        profile = f, df, ddf, self._third(third) if order == 3 else f
+        found = self.profile_jet(pairs.versine / self.support[pairs.column], order)
+        if len(found) <= order:
+            raise self._unknown()
+        profile = tuple(found[min(kind, len(found) - 1)] for kind in range(4))
         count = np.empty(len(pairs.rows), dtype=np.intp)
         merged_counts(pairs.start, pairs.column, count)
         return _Block(pairs, tuple(np.ascontiguousarray(part, dtype=np.float64) for part in profile), count)
@@ -108,11 +115,8 @@ class OrbitSumBasis(DifferentiableBasis):
         described = pairs.start, pairs.column, pairs.versine, pairs.slope, self.support
         return float(self.orbifold.geometry.curvature), described, block.profile
 
-    def _third(self, given: list[Floats]) -> Floats:
-        """f''' from what the profile gives beyond f''."""
-        if given:
-            return given[0]
-        raise FitError(
+    def _unknown(self) -> FitError:
+        return FitError(
             f"the profile of {type(self).__name__} gives f, f' and f'' alone; third derivatives need f''' too, as its "
             "fourth result"
         )

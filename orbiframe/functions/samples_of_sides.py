@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.delaunay.crease_domain import crease_triangulation
+from orbiframe.functions.arcs import Arcs
 from orbiframe.functions.samples import Samples, joined, places
-from orbiframe.functions.smooth_samples import lengths, sagittas
+from orbiframe.functions.smooth_samples import lengths
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.crease_sides import corner_sides, side_normals
 from orbiframe.meshes.sizes import vector_areas
@@ -26,12 +27,12 @@ Bools = NDArray[np.bool_]
 
 # Planes beside a crease hold it: a sample of theirs on it counts so many times.
 _ON_CREASE = 12.0
+# What may be wrong with an arc, as a share of its height.
+_LIFTED = 0.1
 # How far inside of a triangle the side of a corner is told, as a share of the triangle.
 _INSIDE = 1e-7
 # A facet whose arc is higher than this share of the distance of functions stands for something curved.
 _SAGITTA = 0.002
-# Barycentric coordinates below this are those of points of an edge.
-_ON_EDGE = 1e-9
 # Triangles of the domain with fewer samples get as many more as the square of the density says.
 _FEW, _DENSITY = 16, 4
 
@@ -76,13 +77,11 @@ def crease_samples(
     edges that do not bend, as those along a cylinder; other samples count the less, the higher the arc over them is
     against the spacing of the functions.
     """
-    flat, facets = refinement.polyhedron, refinement.facets
+    flat = refinement.polyhedron
     sides, everywhere = Sides.of(triangulation), places(triangulation)
-    crease = crease_of_facets(triangulation, refinement)
-    height = sagittas(facets, np.linalg.norm(vector_areas(facets), axis=1), crease)
-    at_corner, fine_height = _arcs(refinement, crease, height)
-    at_side = np.zeros(len(sides.vertex))
-    np.maximum.at(at_side, sides.corner, at_corner.ravel())
+    arcs = Arcs.of(refinement, _of_facets(triangulation.sharp, refinement))
+    fine_height, at_side = arcs.height[arcs.facet], np.zeros(len(sides.vertex))
+    np.maximum.at(at_side, sides.corner, arcs.over_corners.ravel())
     area = np.linalg.norm(vector_areas(flat), axis=1)
     bent = np.concatenate([_total(sides, np.where(fine_height > 0, area, 0)) > 0, fine_height > 0])
     share = _shares(np.concatenate([at_side, fine_height]) / (_SAGITTA * spacing), curved)
@@ -96,6 +95,9 @@ def crease_samples(
     bent |= curved == "all"
     normals = np.concatenate([side_normals(flat, sides.corner), _unit(vector_areas(flat))])
     normals[bent] = np.nan
+    values = np.concatenate([flat.vertices[sides.vertex], flat.vertices[flat.triangles].mean(axis=1)])
+    if curved == "bent":
+        values += _lifts(arcs, sides)
     chosen = np.concatenate([sides.vertex, len(flat.vertices) + np.arange(flat.face_count)])
     long = np.maximum(_lengths_of_facets(triangulation, refinement)[chosen], spacing)
     centroids = slice(len(flat.vertices), None)
@@ -105,7 +107,7 @@ def crease_samples(
     )
     samples = Samples(
         points,
-        np.concatenate([flat.vertices[sides.vertex], flat.vertices[flat.triangles].mean(axis=1)]),
+        values,
         weights,
         everywhere.stretch[chosen],
         plain,
@@ -114,12 +116,20 @@ def crease_samples(
         normals=normals,
         still=~bent | np.concatenate([sides.parted, np.zeros(flat.face_count, dtype=np.bool_)]),
     )
-    samples = joined(samples, _within_small(triangulation, refinement, samples, bent[len(sides.vertex) :], share, long))
+    lifted = arcs if curved == "bent" else None
+    few = _within_small(triangulation, refinement, samples, bent[len(sides.vertex) :], share, long, lifted)
+    samples = joined(samples, few)
     return samples.take(np.flatnonzero((samples.weights > 0) | (samples.shares > 0)))
 
 
 def _within_small(
-    triangulation: Triangulation, refinement: Bisection, samples: Samples, bent: Bools, share: Floats, long: Floats
+    triangulation: Triangulation,
+    refinement: Bisection,
+    samples: Samples,
+    bent: Bools,
+    share: Floats,
+    long: Floats,
+    arcs: Arcs | None,
 ) -> Samples:
     """More samples in the triangles of the domain that have few: beside corners these are no larger than those of the
     mesh, and some function would reach no sample.
@@ -142,9 +152,12 @@ def _within_small(
     normals = _unit(vector_areas(flat))[face]
     normals[bent[face]] = np.nan
     first = len(share) - flat.face_count
+    values = np.einsum("nc,nci->ni", weights, corners)
+    if arcs is not None:
+        values += arcs.lifts(face, weights)
     return Samples(
         points,
-        np.einsum("nc,nci->ni", weights, corners),
+        values,
         area * share[first:][face],
         stretch,
         area,
@@ -155,51 +168,37 @@ def _within_small(
     )
 
 
+def _lifts(arcs: Arcs, sides: Sides) -> Floats:
+    """From all sides of vertices and all centroids to the arcs over them, (S + G, 3)."""
+    first, count = np.unique(sides.corner, return_index=True)[1], len(arcs.facet)
+    corners, centroids = np.eye(3)[first % 3], np.full((count, 3), 1 / 3)
+    return arcs.lifts(np.append(first // 3, np.arange(count)), np.concatenate([corners, centroids]))
+
+
 def _lengths_of_facets(triangulation: Triangulation, refinement: Bisection) -> Floats:
     return lengths(triangulation, refinement, np.linalg.norm(vector_areas(refinement.facets), axis=1))
-
-
-def _arcs(refinement: Bisection, crease: Bools, height: Floats) -> tuple[Floats, Floats]:
-    """The heights of the arcs of what facets stand for, over the corners of the fine triangles (G, 3), and over these.
-
-    Over vertices of facets there is none; over an edge it is that of the arc with the normals of facets at its ends.
-    """
-    facets = refinement.facets
-    side = corner_sides(facets, crease)
-    normal = side_normals(facets, side, facets.vertices)[side]
-    way = facets.vertices[facets.head] - facets.vertices[facets.tail]
-    other = normal[facets.next] * np.where(np.einsum("hi,hi->h", normal, normal[facets.next]) < 0, -1, 1)[:, None]
-    over_edge = np.abs(np.einsum("hi,hi->h", other - normal, way)).reshape(-1, 3) / 8
-    own = np.concatenate([np.tile(np.eye(3), (len(height), 1, 1)), np.zeros((len(height), 3, 1))], axis=2)
-    own[:, :, 3] = np.arange(len(height))[:, None]
-    fine = refinement.spread(own)
-    facet = fine[:, 0, 3].round().astype(np.intp)
-    near = fine[:, :, :3] < _ON_EDGE
-    opposite = (near.argmax(axis=2) + 1) % 3
-    zeros = near.sum(axis=2)
-    edge = over_edge[facet[:, None], opposite]
-    found = np.where(
-        zeros == 0, height[facet][:, None], np.where(zeros == 1, np.minimum(edge, height[facet][:, None]), 0)
-    )
-    return np.asarray(found), height[facet]
 
 
 def _shares(height: Floats, curved: str) -> Floats:
     """What is left of the weights of samples by the heights of the arcs over them."""
     if curved == "bent":
-        return np.asarray(1 / (1 + height**2))
+        return np.asarray(1 / (1 + (_LIFTED * height) ** 2))
     return np.full(len(height), 0.0 if curved == "all" else 1.0)
 
 
 def crease_of_facets(triangulation: Triangulation, refinement: Bisection) -> Bools:
     """The halfedges of the facets that are creases, (H,), from those of the refined mesh."""
     assert triangulation.crease is not None
+    return _of_facets(triangulation.crease, refinement)
+
+
+def _of_facets(marked: Bools, refinement: Bisection) -> Bools:
     facet, corner = np.divmod(np.arange(len(refinement.facets.tail)), 3)
     barycentric = np.zeros((len(facet), 3))
     barycentric[np.arange(len(facet)), corner] = 0.4375 + 1 / 64 + 1 / 1024
     barycentric[np.arange(len(facet)), (corner + 1) % 3] = 1 - barycentric.max(axis=1)
     fine, weights = replace(refinement, coarse=refinement.facets, log=None).locate(facet, barycentric)
-    return np.asarray(triangulation.crease[3 * fine + (np.abs(weights).argmin(axis=1) + 1) % 3])
+    return np.asarray(marked[3 * fine + (np.abs(weights).argmin(axis=1) + 1) % 3])
 
 
 def _at_given(sides: Sides, refinement: Bisection, area: Floats, curved: Bools) -> Floats:

@@ -17,8 +17,10 @@ from .edge_paths import (
 )
 from .face_diagonals import outline as outline, triangulated as triangulated
 from .fans import fan_labels as fan_labels
+from .marked_edges import MarkedEdges as MarkedEdges
 from .orientation import oriented as oriented, reversed_faces as reversed_faces
 from .polyhedron import Polyhedron as Polyhedron
+from .quad_blocks import blocks_near as blocks_near
 from .repair import (
     component as component,
     drop_degenerate as drop_degenerate,

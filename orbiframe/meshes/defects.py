@@ -15,7 +15,7 @@ from orbiframe.errors import TopologyError
 from orbiframe.meshes.coincident_points import clusters
 from orbiframe.meshes.fans import fans_at_vertices
 from orbiframe.meshes.open_edges import Seams, seams
-from orbiframe.meshes.orientation import _face_sheets, face_components
+from orbiframe.meshes.orientation import face_components
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import faces_without_area
 from orbiframe.meshes.surface_type import SurfaceType, _used_vertices, surface_type
@@ -241,7 +241,7 @@ def _several_components(polyhedron: Polyhedron, found: Seams) -> Defect | None:
 
 
 def _orientation(polyhedron: Polyhedron) -> Defect | None:
-    components, sheets, _ = _face_sheets(polyhedron)
+    components, sheets, _ = polyhedron.sheets
     turned = np.flatnonzero(polyhedron.same & polyhedron.representative)
     if sheets != 2 * components or not len(turned):
         return None

@@ -20,7 +20,7 @@ def oriented(polyhedron: Polyhedron) -> Polyhedron:
 
     In every component the majority of the faces keeps its orientation.
     """
-    components, sheets, label = _face_sheets(polyhedron)
+    components, sheets, label = polyhedron.sheets
     if sheets != 2 * components:
         return polyhedron
     count = polyhedron.face_count
@@ -53,7 +53,7 @@ def face_components(polyhedron: Polyhedron) -> tuple[int, Ints]:
 
     Components are numbered from the one with the most faces down; of two alike, the one with the first face leads.
     """
-    components, _, label = _face_sheets(polyhedron)
+    components, _, label = polyhedron.sheets
     count = polyhedron.face_count
     _, first, merged, size = np.unique(
         np.minimum(label[:count], label[count:]), return_index=True, return_inverse=True, return_counts=True
@@ -63,7 +63,7 @@ def face_components(polyhedron: Polyhedron) -> tuple[int, Ints]:
     return components, rank[merged.ravel()]
 
 
-def _face_sheets(polyhedron: Polyhedron) -> tuple[int, int, Ints]:
+def face_sheets(polyhedron: Polyhedron) -> tuple[int, int, Ints]:
     """Components of the faces, and of the two-sheeted orientation cover (nodes f and F + f), with its labels."""
     count = polyhedron.face_count
     glued = np.flatnonzero(polyhedron.twin >= 0)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from orbiframe.errors import TopologyError
+from orbiframe.meshes.marked_edges import MarkedEdges
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -19,6 +20,10 @@ Bools = NDArray[np.bool_]
 
 # From so many halfedges on, a compiled loop gains more time than the import of the compiler takes.
 LARGE = 2**20
+
+
+# What follows from the faces alone, wherever the vertices are.
+_OF_FACES = ("face_sizes", "face", "next", "head", "representative", "edge", "is_triangular", "triangles", "sheets")
 
 
 # The units that coordinates may have.
@@ -38,7 +43,8 @@ class Polyhedron:
     (H,); twin is -1 where an edge lies in one face only, or in three or more. Optional, as far as a file has them:
     normals (V, 3), colors (V, 3 or 4) and face_colors (F, 3 or 4), colours from 0 to 1; unit, that of the coordinates:
     "millimetre" or "metre"; corner_normals (H, 3), of every corner of every face, where they are not those of the
-    vertices: beside creases; corner_uv (H, 2), texture coordinates of every corner of every face.
+    vertices: beside creases; corner_uv (H, 2), texture coordinates of every corner of every face; marked, the edges
+    that a file says are sharp.
 
     >>> import numpy as np
     >>> from orbiframe import Polyhedron
@@ -61,6 +67,7 @@ class Polyhedron:
     unit: str | None = None
     corner_normals: Floats | None = None
     corner_uv: Floats | None = None
+    marked: MarkedEdges | None = None
 
     @classmethod
     def from_corners(
@@ -169,6 +176,13 @@ class Polyhedron:
         return self.tail.reshape(-1, 3)
 
     @cached_property
+    def sheets(self) -> tuple[int, int, Ints]:
+        """Components of the faces, and of their two-sheeted orientation cover, with its labels (2F,) of f and F + f."""
+        from orbiframe.meshes.orientation import face_sheets
+
+        return face_sheets(self)
+
+    @cached_property
     def edge_lengths(self) -> Floats:
         """Length in space of every halfedge, (H,)."""
         return np.asarray(np.linalg.norm(self.vertices[self.head] - self.vertices[self.tail], axis=1))
@@ -185,7 +199,10 @@ class Polyhedron:
 
     def with_vertices(self, vertices: Floats, normals: Floats | None = None) -> Polyhedron:
         """The same faces with other vertices (and normals); all but the normals of corners is kept."""
-        return replace(self, vertices=np.asarray(vertices, dtype=np.float64), normals=normals, corner_normals=None)
+        found = replace(self, vertices=np.asarray(vertices, dtype=np.float64), normals=normals, corner_normals=None)
+        # What is known of the faces is known of those too.
+        found.__dict__.update({name: self.__dict__[name] for name in _OF_FACES if name in self.__dict__})
+        return found
 
     def to_trimesh(self) -> Any:
         """A trimesh.Trimesh of triangles, with the normals if there are some; vertices keep their numbers."""

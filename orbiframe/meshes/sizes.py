@@ -115,14 +115,24 @@ def _rescaled(value: float, scale: float, power: int) -> float:
 
 def vector_areas(polyhedron: Polyhedron) -> NDArray[np.float64]:
     """The area of every face times its normal, (F, 3): half the sum of the cross products round the face."""
+    if polyhedron.is_triangular:
+        a, b, c = (polyhedron.vertices[ends] for ends in polyhedron.triangles.T)
+        return _crossed(b - a, c - a)
     origin = polyhedron.vertices[polyhedron.tail[polyhedron.offsets[polyhedron.face]]]
-    a = polyhedron.vertices[polyhedron.tail] - origin
-    b = polyhedron.vertices[polyhedron.head] - origin
-    cross = np.cross(a, b) / 2
+    cross = _crossed(polyhedron.vertices[polyhedron.tail] - origin, polyhedron.vertices[polyhedron.head] - origin)
     total = np.zeros((polyhedron.face_count, 3))
     for axis in range(3):
         total[:, axis] = np.bincount(polyhedron.face, weights=cross[:, axis], minlength=polyhedron.face_count)
     return total
+
+
+def _crossed(a: Floats, b: Floats) -> Floats:
+    """Half the cross products of rows, with no zero that is negative."""
+    found = np.empty(a.shape)
+    for axis in range(3):
+        y, z = (axis + 1) % 3, (axis + 2) % 3
+        found[:, axis] = (a[:, y] * b[:, z] - a[:, z] * b[:, y]) / 2 + 0.0
+    return found
 
 
 def faces_without_area(polyhedron: Polyhedron) -> Ints:

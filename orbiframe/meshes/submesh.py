@@ -41,5 +41,6 @@ def submesh(mesh: Polyhedron, faces: NDArray[np.bool_]) -> Submesh:
         face_colors=None if mesh.face_colors is None else mesh.face_colors[faces],
         corner_uv=None if mesh.corner_uv is None else mesh.corner_uv[corner],
         corner_normals=None if mesh.corner_normals is None else mesh.corner_normals[corner],
+        marked=None if mesh.marked is None else mesh.marked.renumbered(np.where(used, np.cumsum(used) - 1, -1)),
     )
     return Submesh(found, np.flatnonzero(used))

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.meshes.fans import fans_at_vertices
-from orbiframe.meshes.orientation import _face_sheets
 from orbiframe.meshes.polyhedron import Polyhedron
 
 Bools = NDArray[np.bool_]
@@ -55,7 +54,7 @@ def surface_type(polyhedron: object) -> SurfaceType:
     False
     """
     polyhedron = Polyhedron.of(polyhedron)
-    components, sheets, _ = _face_sheets(polyhedron)
+    components, sheets, _ = polyhedron.sheets
     used = int(_used_vertices(polyhedron).sum())
     chi = used - polyhedron.edge_count + polyhedron.face_count
     closed = polyhedron.face_count > 0 and bool((polyhedron.face_sizes > 0).all() and (polyhedron.twin >= 0).all())
@@ -72,8 +71,9 @@ def without_unused_vertices(polyhedron: Polyhedron) -> Polyhedron:
         return polyhedron
     number = np.cumsum(used) - 1
     normals, colors = (None if a is None else a[used] for a in (polyhedron.normals, polyhedron.colors))
-    tail = number[polyhedron.tail]
-    return replace(polyhedron, vertices=polyhedron.vertices[used], tail=tail, normals=normals, colors=colors)
+    marked = None if polyhedron.marked is None else polyhedron.marked.renumbered(np.where(used, number, -1))
+    found = replace(polyhedron, vertices=polyhedron.vertices[used], tail=number[polyhedron.tail], marked=marked)
+    return replace(found, normals=normals, colors=colors)
 
 
 def _used_vertices(polyhedron: Polyhedron) -> Bools:

@@ -1,4 +1,4 @@
-"""Hairs from both sides: where a surface that is smooth between its creases may still have a kink."""
+"""Hairs and seams from both sides: where a surface that is smooth between its creases may still have a kink."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _BESIDE = 1e-7
 
 
 class HairPoints(NamedTuple):
-    """Points of X/H on both sides of hairs, and unit vectors across, (n, 2), in their frames."""
+    """Points of X/H on both sides of hairs and seams, and unit vectors across, (n, 2), in their frames."""
 
     inside: Points
     outside: Points
@@ -27,9 +27,11 @@ class HairPoints(NamedTuple):
 
 
 def hair_points(domain: GeodesicTriangulation) -> HairPoints:
-    """Some points of every hair of a triangulation with creases (see `Sectors`)."""
+    """Some points of every hair and every seam of a triangulation with creases (see `Sectors`)."""
     geometry, share = domain.geometry, np.array(_SHARES)[:, None]
-    halfedge = np.flatnonzero(Sectors(domain).hair & domain.reference)
+    smooth = Sectors(domain).hair
+    smooth = smooth if domain.seam is None else smooth | domain.seam
+    halfedge = np.flatnonzero(smooth & domain.reference)
     face, c = np.divmod(halfedge, 3)
     start, end, opposite = (domain.corners[face, (c + k) % 3][:, None] for k in range(3))
     on_edge = (1 - share) * start + share * end

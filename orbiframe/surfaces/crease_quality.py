@@ -31,7 +31,8 @@ class CreaseQuality(NamedTuple):
     curves: how many run between corners, ends and themselves; corners, ends: of creases; edges: of the domain;
     distance: the largest of the vertices on the creases of the mesh from the creases of the surface and back, in
     diagonals; angle: the root mean square of what the angle of the surface lacks to that of the facets, in degrees;
-    kinks: the root mean square and the largest of the angles at hairs, where the surface should be smooth, in degrees.
+    kinks: the root mean square and the largest of the angles at hairs, where the surface should be smooth, in degrees;
+    place: where the largest is, in space.
     """
 
     curves: int
@@ -41,13 +42,15 @@ class CreaseQuality(NamedTuple):
     distance: float
     angle: float
     kinks: tuple[float, float]
+    place: tuple[float, float, float]
 
     def notes(self) -> Iterator[str]:
         """Sentences for what a user should look at."""
         if self.kinks[1] > _KINK:
+            where = ", ".join(f"{x:.6g}" for x in self.place)
             yield (
-                f"the surface has kinks of up to {self.kinks[1]:.1f}° beside its creases, where it should be smooth; "
-                "more functions help (option size)"
+                f"the surface has kinks of up to {self.kinks[1]:.1f}° beside its creases, where it should be smooth, "
+                f"near ({where}); more functions help (option size), or a larger angle"
             )
 
 
@@ -56,25 +59,31 @@ def crease_quality(surface: OrbifoldSurface) -> CreaseQuality | None:
     flat, basis = surface.triangulation, surface.basis
     if flat.crease is None or not isinstance(basis, ElementBasis):
         return None
-    graph = CreaseGraph.of(surface.refinement.polyhedron, flat.crease)
+    graph = CreaseGraph.of(surface.refinement.polyhedron, flat.sharp)
     curves = sum(1 for _ in graph.chains(flat))
-    degree = basis.domain.crease_degree
-    kinks = np.degrees(_kinks(surface, basis))
+    degree, sharp = basis.domain.sharp_degree, basis.domain.sharp
+    kinks, place = _kinks(surface, basis)
     return CreaseQuality(
         curves,
         int((degree > 2).sum()),
         int((degree == 1).sum()),
-        int((basis.domain.creased & basis.domain.reference).sum()),
+        int((sharp & basis.domain.reference).sum()),
         _distance(surface),
         float(np.degrees(np.sqrt(np.mean(_angles(surface) ** 2)))),
         (float(np.sqrt(np.mean(kinks**2))), float(kinks.max())) if len(kinks) else (0.0, 0.0),
+        place,
     )
 
 
-def _kinks(surface: OrbifoldSurface, basis: ElementBasis) -> Floats:
-    """The angles between the tangent planes on both sides of hairs, (n,)."""
+def _kinks(surface: OrbifoldSurface, basis: ElementBasis) -> tuple[Floats, tuple[float, float, float]]:
+    """The angles between the tangent planes on both sides of hairs in degrees, (n,), and where the largest is."""
     inside, outside, _ = hair_points(basis.domain)
-    return _between(_unplaced_normals(surface, inside), _unplaced_normals(surface, outside))
+    found = np.degrees(_between(_unplaced_normals(surface, inside), _unplaced_normals(surface, outside)))
+    if not len(found):
+        return found, (0.0, 0.0, 0.0)
+    worst = np.array([found.argmax()])
+    x, y, z = (float(number) for number in surface.evaluate(Points(inside.patch[worst], inside.x[worst]))[0])
+    return found, (x, y, z)
 
 
 def _unplaced_normals(surface: OrbifoldSurface, points: Points) -> Floats:
@@ -84,8 +93,7 @@ def _unplaced_normals(surface: OrbifoldSurface, points: Points) -> Floats:
 def _angles(surface: OrbifoldSurface) -> Floats:
     """The angle of the surface less that of the facets at the middles of the edges of the mesh on creases, (n,)."""
     flat, mesh = surface.triangulation, surface.refinement.polyhedron
-    assert flat.crease is not None
-    halfedge = np.flatnonzero(flat.crease & mesh.representative)
+    halfedge = np.flatnonzero(flat.sharp & mesh.representative)
     sides = halfedge, mesh.twin[halfedge]
     here, there = (surface.normals(_middles(surface, side)) * flat.face_signs[side // 3, None] for side in sides)
     corners = mesh.vertices[mesh.triangles]
@@ -111,8 +119,7 @@ def _between(a: Floats, b: Floats) -> Floats:
 def _distance(surface: OrbifoldSurface) -> float:
     """The largest distance between the creases of the mesh and those of the surface, both as chains of segments."""
     flat, mesh = surface.triangulation, surface.refinement.polyhedron
-    assert flat.crease is not None
-    halfedge = np.flatnonzero(flat.crease & mesh.representative)
+    halfedge = np.flatnonzero(flat.sharp & mesh.representative)
     ends = np.stack([mesh.tail[halfedge], mesh.head[halfedge]], axis=1)
     vertex = np.unique(ends)
     place = np.full(len(mesh.vertices), -1)

@@ -16,6 +16,7 @@ POSITIONAL = {
     "group": 2,
     "parametrizer": 3,
     "optimizer": 2,
+    "solver": 1,
     "basis": 2,
     "fitter": 0,
     "reader": 1,

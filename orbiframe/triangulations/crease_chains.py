@@ -23,10 +23,13 @@ _ON_EDGE = 1e-9
 
 
 class Chain(NamedTuple):
-    """A curve along edges: its vertices (m + 1,), and the transitions from the frame of each to the next one (m,)."""
+    """A curve along edges: its vertices (m + 1,), the transitions from the frame of each to the next one (m,), and the
+    first halfedge of the mesh that it runs along.
+    """
 
     vertices: Ints
     steps: Ints
+    first: int
 
     def frames(self, triangulation: Triangulation) -> Floats:
         """The isometries from the patches of all vertices to that of the first one, (m + 1, 3, 3)."""
@@ -50,11 +53,19 @@ class CreaseGraph(NamedTuple):
     stops: Ints
 
     @classmethod
-    def of(cls, mesh: Polyhedron, crease: Bools, stops: Ints | None = None) -> CreaseGraph:
-        """The graph of marked halfedges (H,), with the stops given, or the corners and ends of creases."""
+    def of(cls, mesh: Polyhedron, crease: Bools, stops: Ints | None = None, seam: Bools | None = None) -> CreaseGraph:
+        """The graph of marked halfedges (H,), with the stops given, or the corners and ends of creases.
+
+        seam: (H,), those of another kind; a curve is of one kind, and stops where it changes.
+        """
         graph = edge_graph(mesh)
         links = crease[graph.halfedge]
-        return cls(mesh, graph, links, _corners(mesh, graph, links) if stops is None else np.asarray(stops))
+        if stops is None:
+            stops = _corners(mesh, graph, links)
+            if seam is not None:
+                smooth, sharp = (np.union1d(mesh.tail[kind], mesh.head[kind]) for kind in (seam, crease & ~seam))
+                stops = np.union1d(stops, np.intersect1d(smooth, sharp))
+        return cls(mesh, graph, links, np.asarray(stops))
 
     def chains(self, triangulation: Triangulation) -> Iterator[Chain]:
         """The curves from stop to stop, each once, and closed curves without a stop from their first vertex on.
@@ -71,6 +82,7 @@ class CreaseGraph(NamedTuple):
 
     def _chain(self, triangulation: Triangulation, link: int, begin: int, stop: Bools, done: Bools) -> Chain:
         graph, vertices, steps = self.graph, [begin], []
+        first = int(graph.halfedge[link])
         while True:
             halfedge, back = graph.halfedge[link], graph.backward[link]
             step = triangulation.transition[halfedge]
@@ -78,11 +90,11 @@ class CreaseGraph(NamedTuple):
             vertices.append(int(graph.neighbour[link]))
             done[link] = done[self._reverse(link, vertices[-1])] = True
             if stop[vertices[-1]] or vertices[-1] == begin:
-                return Chain(np.array(vertices), np.array(steps))
+                return Chain(np.array(vertices), np.array(steps), first)
             here = np.arange(graph.start[vertices[-1]], graph.start[vertices[-1] + 1])
             ahead = here[~done[here]]
             if not len(ahead):
-                return Chain(np.array(vertices), np.array(steps))
+                return Chain(np.array(vertices), np.array(steps), first)
             link = int(ahead[0])
 
     def _reverse(self, link: int, vertex: int) -> int:

@@ -33,7 +33,7 @@ class GeodesicTriangulation:
     the gluing reverses orientation; gluing: (3 F, 3, 3), the isometry from the frame of the triangle of the twin to the
     frame of the triangle of the halfedge; patch: (F,) and placement: (F, 3, 3), the isometry from the frame of each
     triangle to the frame of a patch of the orbifold. crease: (3 F,), the halfedges of creases, across which functions
-    are only continuous; None for none.
+    are only continuous; None for none. seam: (3 F,), those of them across which a surface is smooth; None for none.
     """
 
     orbifold: Orbifold
@@ -44,6 +44,7 @@ class GeodesicTriangulation:
     patch: Ints
     placement: Floats
     crease: Bools | None = None
+    seam: Bools | None = None
 
     @classmethod
     def of_map(cls, triangulation: Triangulation) -> GeodesicTriangulation:
@@ -146,10 +147,23 @@ class GeodesicTriangulation:
         """The halfedges of creases, (3 F,)."""
         return np.zeros(3 * self.face_count, dtype=np.bool_) if self.crease is None else self.crease
 
+    @property
+    def sharp(self) -> Bools:
+        """The halfedges of creases that are no seams, (3 F,)."""
+        return self.creased if self.seam is None else self.creased & ~self.seam
+
     @cached_property
     def crease_degree(self) -> Ints:
         """How many creases meet at every vertex, (V,): 1 where one ends, 2 on its way, more at corners."""
-        first, vertex = np.flatnonzero(self.creased & self.reference), self.vertex.ravel()
+        return self._degree(self.creased)
+
+    @property
+    def sharp_degree(self) -> Ints:
+        """The same without seams."""
+        return self._degree(self.sharp)
+
+    def _degree(self, marked: Bools) -> Ints:
+        first, vertex = np.flatnonzero(marked & self.reference), self.vertex.ravel()
         return np.bincount(vertex[np.concatenate([first, _following(first)])], minlength=self.vertex_count)
 
     @cached_property
@@ -220,17 +234,8 @@ class GeodesicTriangulation:
         gluing = edge_gluings(geometry, corners, twin, same)
         patch = np.repeat(self.patch, 4)
         return GeodesicTriangulation(
-            self.orbifold, corners, twin, same, gluing, patch, placement, self._refined_creases()
+            self.orbifold, corners, twin, same, gluing, patch, placement, _halves(self.crease), _halves(self.seam)
         )
-
-    def _refined_creases(self) -> Bools | None:
-        """The halves of creases."""
-        if self.crease is None:
-            return None
-        crease, whole = np.zeros((self.face_count, 4, 3), dtype=np.bool_), self.crease.reshape(-1, 3)
-        for c in range(3):
-            crease[:, c, c], crease[:, (c + 1) % 3, c] = whole[:, c], whole[:, c]
-        return crease.ravel()
 
     def _refined_twins(self) -> tuple[Ints, Bools]:
         """Twins and side flags of the children: outer halves inherit."""
@@ -265,3 +270,14 @@ def _half(halfedge: Ints, first: Bools) -> Ints:
     """The half of a halfedge, in the refined triangulation, that begins where it does, or that ends where it does."""
     face, c = np.divmod(halfedge, 3)
     return np.asarray(12 * face + 3 * np.where(first, c, (c + 1) % 3) + c)
+
+
+def _halves(marked: Bools | None) -> Bools | None:
+    """The halves of marked edges (3 F,) of triangles that are cut in four, (12 F,)."""
+    if marked is None:
+        return None
+    whole = marked.reshape(-1, 3)
+    found = np.zeros((len(whole), 4, 3), dtype=np.bool_)
+    for c in range(3):
+        found[:, c, c], found[:, (c + 1) % 3, c] = whole[:, c], whole[:, c]
+    return found.ravel()

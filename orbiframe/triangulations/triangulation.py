@@ -31,7 +31,8 @@ class Triangulation:
     weights: which edge weights made the map, both in words for the report. density: (V,), how many functions there
     should be per length at each vertex beyond what the map alone asks for, up to a factor; None: the same everywhere.
     crease: (H,), the halfedges of creases, across which functions are only continuous; sites: (n,), the vertices that
-    the domain of splines then has, between which creases run along geodesics; None for none. inside: (F,), the
+    the domain of splines then has, between which creases run along geodesics; None for none. seam: (H,), those of the
+    creases across which a surface is smooth, as where a plane ends in a round; None for none. inside: (F,), the
     triangles of a mesh with a boundary, which the others only close; None where all belong to the mesh.
 
     >>> from orbiframe import fit
@@ -53,6 +54,7 @@ class Triangulation:
     crease: Bools | None = None
     sites: Ints | None = None
     inside: Bools | None = None
+    seam: Bools | None = None
 
     __repr__ = one_line
 
@@ -60,6 +62,12 @@ class Triangulation:
     def own_faces(self) -> Ints:
         """The triangles that belong to the mesh, without those that only close it."""
         return np.arange(self.polyhedron.face_count) if self.inside is None else np.flatnonzero(self.inside)
+
+    @property
+    def sharp(self) -> Bools:
+        """The halfedges of creases that are no seams, (H,)."""
+        none = np.zeros(len(self.polyhedron.tail), dtype=np.bool_)
+        return none if self.crease is None else self.crease if self.seam is None else self.crease & ~self.seam
 
     @cached_property
     def border(self) -> Ints:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from orbiframe import FormatError, Registry, UsageError
 from orbiframe.files import require_apart
+from orbiframe.fitting import add_boundary
 from orbiframe.plugin import DEFAULT_MARKER
 
 if TYPE_CHECKING:
@@ -22,12 +23,13 @@ _FEW = "basis.size=100"
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add("mesh", metavar="MESH", type=Path, help="a closed mesh, or a surface that `fit --save` wrote (.npz)")
+    add("mesh", metavar="MESH", type=Path, help="a mesh, or a surface that `fit --save` wrote (.npz)")
     add("-o", "--output", metavar="FILE", type=Path, required=True, help="the picture: .svg, .png or .pdf")
     what = parser.add_mutually_exclusive_group().add_argument
     what("--surface", action="store_true", help="the smooth surface beside the tessellation")
     what("--cut", action="store_true", help="the mesh with the loops that cut it open, beside the polygon they make")
     add("--group", metavar="NAME", help="a named group, such as regular-polygon; else that of the mesh (group.method)")
+    add_boundary(parser)
     add("--config", metavar="FILE.toml", type=Path, help="components and options of the fit")
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=200")
     add("--model", metavar="NAME", help="projective, conformal (the default), hyperboloid or sphere")
@@ -77,11 +79,14 @@ def _made(args: argparse.Namespace, registry: Registry) -> _Made:
     from orbiframe.meshes import oriented
 
     if args.mesh.suffix.lower() == SURFACE:
-        if args.group or args.config or args.set:
-            raise UsageError(f"{args.mesh} is a finished surface; --group, --config and --set belong to meshes")
+        if args.group or args.config or args.set or args.boundary:
+            raise UsageError(
+                f"{args.mesh} is a finished surface; --group, --boundary, --config and --set belong to meshes"
+            )
         surface = load_surface(args.mesh, registry)
         return _Made(surface, surface.own_mesh)
     chosen = [f"group.method={args.group}"] if args.group else []
+    chosen += [f"mesh.boundary={args.boundary}"] if args.boundary else []
     sized = args.surface or args.config or any(text.startswith("basis.") for text in args.set)
     config = Config.load(args.config, [*([] if sized else [_FEW]), *args.set, *chosen], registry)
     polyhedron = oriented(_read(args, registry))
@@ -111,6 +116,8 @@ def _cut(args: argparse.Namespace, view: Any, registry: Registry) -> Picture:
 
     if args.mesh.suffix.lower() == SURFACE:
         raise FormatError(f"{args.mesh}: loops are drawn on a mesh; give the mesh that the surface was made of")
+    if args.boundary:
+        raise UsageError("--cut draws loops that cut a closed surface open; leave out --cut or --boundary")
     mesh = _read(args, registry)
     surface = require_closed_surface(mesh)
     marking = registry.load("marker", DEFAULT_MARKER)(mesh)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import Group, Marking, OrbifoldSurface, Polyhedron
-from orbiframe.meshes import outline
+from orbiframe.meshes import outline, refine
 from orbiframe.triangulations import Tessellation
 from orbiframe.words import text_of
 from orbiframe_drawing.colours import INK, line_colour
@@ -34,15 +34,16 @@ def surface_picture(
     coarse = surface.refinement.coarse
     density = max(int(np.sqrt(_FINE / coarse.face_count)), 1)
     solid = Solid3D(surface.tessellate(density), _SPACE, view, smooth=True)
-    lines = [solid.polyhedron.vertices[chain] for chain in _edge_chains(polyhedron, coarse, density)]
+    lines = list(solid.polyhedron.vertices[edge_chains(polyhedron, surface, density)])
     drawn: list[Item] = [solid.image(), Shape(solid.lines(lines), stroke=line_colour(1), width=0.5)]
     if tiling is None:
         tiling = tessellation_picture(Tessellation.of_map(polyhedron, surface.refinement, surface.triangulation))
     return beside([Picture(tuple(drawn), solid.box).padded(MARGIN), tiling])
 
 
-def _edge_chains(polyhedron: Polyhedron, coarse: Polyhedron, density: int) -> NDArray[np.intp]:
-    """The vertices of `refine(coarse, density)` along every edge of the polyhedron, (E, density + 1)."""
+def edge_chains(polyhedron: Polyhedron, surface: OrbifoldSurface, density: int) -> NDArray[np.intp]:
+    """The vertices of `surface.tessellate(density)` along every edge of the polyhedron, (E, density + 1)."""
+    coarse = surface.refinement.coarse
     halfedge = outline(polyhedron)[polyhedron.representative]
     tail, head = coarse.tail[halfedge], coarse.head[halfedge]
     # Halfedge h of the coarse mesh is cut into density pieces; the vertices between them follow those of the edge.
@@ -50,7 +51,13 @@ def _edge_chains(polyhedron: Polyhedron, coarse: Polyhedron, density: int) -> ND
     inner = first + np.arange(density - 1)
     forward = (coarse.representative[halfedge] | coarse.same[halfedge])[:, None]
     inner = np.where(forward, inner, inner[:, ::-1])
-    return np.concatenate([tail[:, None], inner, head[:, None]], axis=1)
+    chains = np.concatenate([tail[:, None], inner, head[:, None]], axis=1)
+    if surface.own.all():
+        return chains
+    # A tessellation has no triangles that only close the mesh, and counts its vertices without theirs.
+    refined = refine(coarse, density)
+    own = surface.own[refined.origin][refined.polyhedron.face]
+    return np.searchsorted(np.unique(refined.polyhedron.tail[own]), chains)
 
 
 def cut_picture(marking: Marking, group: Group, *, view: View = VIEW) -> Picture:

@@ -28,7 +28,7 @@ _EDGE_SHARE = 0.15
 ANGLE = 0.1  # degrees between the tangent planes of neighbours
 # What is asked for where intervals are looked at: between those points it may be a little more.
 _ASKED = 0.85 * ANGLE
-_WITHIN = np.array([0.1, 0.3, 0.5, 0.7, 0.9])  # where an interval is looked at
+_WITHIN = np.linspace(0.0625, 0.9375, 8)  # where an interval is looked at
 
 
 @dataclass(eq=False)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from orbiframe import OrbifoldSurface
 from orbiframe_exact.complete_spline import DEGREE, full_knots
 from orbiframe_exact.conforming import conforming as with_equal_knots
-from orbiframe_exact.faces_of_surface import described, fitted
+from orbiframe_exact.faces_of_surface import Quads, described, fitted
 from orbiframe_exact.quad_domain import QuadDomain
 
 Floats = NDArray[np.float64]
@@ -23,15 +23,21 @@ _SIDES = (3, 2, 4, 1)
 
 
 def write_gismo(
-    path: Path, surface: OrbifoldSurface, *, faces: int = 0, tolerance: float = 1e-4, conforming: bool = False
+    path: Path,
+    surface: OrbifoldSurface,
+    *,
+    faces: int = 0,
+    tolerance: float = 1e-4,
+    conforming: bool = False,
+    quads: Quads = (),
 ) -> dict[str, Any]:
     """The surface as a MultiPatch of TensorBSpline2 in an XML file of G+Smo, with all interfaces.
 
     faces: about so many patches, 0 for as many as its topology suggests; tolerance: their largest distance from the
     surface as a share of the diagonal of its box; conforming: equal knots along strips, so that neighbours have the
-    same functions on their common edge. Returns what they are in numbers.
+    same functions on their common edge; quads: the faces of the input, as for STEP. Returns what they are in numbers.
     """
-    found = fitted(surface, faces or None, tolerance)
+    found = fitted(surface, faces or None, tolerance, quads)
     patches = with_equal_knots(found) if conforming else found.faces
     text = [
         '<?xml version="1.0" encoding="UTF-8"?>',

@@ -1,4 +1,4 @@
-"""STEP and IGES files with exact patches, through Open CASCADE."""
+"""STEP and IGES files with exact patches, or a few faces in their colours, through Open CASCADE."""
 
 from __future__ import annotations
 
@@ -9,23 +9,29 @@ from contextlib import contextmanager
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.IFSelect import IFSelect_RetDone
-from OCP.IGESControl import IGESControl_Writer
+from OCP.IGESCAFControl import IGESCAFControl_Writer
+from OCP.IGESControl import IGESControl_Controller, IGESControl_Reader
 from OCP.IGESData import IGESData_GlobalSection, IGESData_IGESWriter
 from OCP.IGESSelect import IGESSelect_WorkLibrary
 from OCP.Interface import Interface_Static
 from OCP.Message import Message
 from OCP.StepBasic import StepBasic_Product
-from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
+from OCP.STEPCAFControl import STEPCAFControl_Writer
+from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader
 from OCP.TCollection import TCollection_HAsciiString
 
 from orbiframe import FitError, Notice, OrbifoldSurface, __version__
 from orbiframe.surfaces import PeriodicPatch, patches_of
-from orbiframe_exact.faces_of_surface import described, fitted
+from orbiframe_exact.coloured_document import document_of
+from orbiframe_exact.face_colours import face_colours
+from orbiframe_exact.faces_of_surface import Quads, described, fitted
 from orbiframe_exact.shapes import shape_of
 from orbiframe_exact.spline_shapes import spline_shape
 from orbiframe_exact.step_text import shorter
@@ -51,30 +57,36 @@ def write_step(
     tolerance: float = 1e-4,
     unit: str = "mm",
     name: str = _NAME,
+    quads: Quads = (),
 ) -> dict[str, Any]:
     """The surface in a STEP file (AP214): a solid where it has an inside, else a shell.
 
     exact: as rational patches, three for each micro triangle; a tensor product is one periodic surface. Otherwise a few
-    polynomial B-spline faces near the surface: faces, about so many, 0 for as many as its topology suggests; tolerance,
-    their largest distance from the surface as a share of the diagonal of its box. Returns what they are in numbers.
+    polynomial B-spline faces near the surface, in the colours of the input: faces, about so many, 0 for as many as its
+    topology suggests; tolerance, their largest distance from the surface as a share of the diagonal of its box. Returns
+    what they are in numbers, with `valid`, what Open CASCADE finds when it reads the file.
     unit: mm, cm, m or in; a surface in another one is converted, with a notice, and one of no unit has its numbers in
-    this one. name: of the product; letters, digits and ._- are kept. Raises FitError for a surface without exact
+    this one. name: of the product; letters, digits and ._- are kept. quads: the faces of the input, if all have four
+    corners; blocks of them become faces where that serves. Raises FitError for a surface without exact
     patches, or derivatives, for another unit, or where Open CASCADE fails.
     """
-    shape, found, periodic = _shape(_in_unit(path, surface, unit), exact, faces, tolerance)
+    made = _made(_in_unit(path, surface, unit), exact, faces, tolerance, quads)
     _silence()
-    writer = STEPControl_Writer()
+    writer = STEPCAFControl_Writer()
+    writer.SetColorMode(True)
     Interface_Static.SetCVal_s("write.step.unit", _UNITS[unit][0])
-    # Readers find lines in the parameter squares of patches again, and without them files are smaller by a third; not
-    # so on a periodic surface, where two of them are one curve in space.
-    Interface_Static.SetIVal_s("write.surfacecurve.mode", int(periodic))
+    # Readers find lines in the parameter squares of patches again, and without them files are smaller, exact ones by a
+    # third. Not so on a periodic surface, where two of them are one curve in space, nor on a face that meets a vertex
+    # twice.
+    Interface_Static.SetIVal_s("write.surfacecurve.mode", int(made.seamed))
     with _lengths_in(unit):
-        _require(writer.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone, "convert the shape to STEP")
-    _sign_step(writer, _plain(name))
+        _require(bool(writer.Transfer(document_of(made.shape, made.colours), STEPControl_AsIs)), "convert to STEP")
+    _sign_step(writer.ChangeWriter(), _plain(name))
     _require(writer.Write(str(path)) == IFSelect_RetDone, "write the STEP file")
     if not exact:
         Path(path).write_text(shorter(Path(path).read_text(encoding="ascii")), encoding="ascii")
-    return found
+        made.numbers["valid"] = _sound(STEPControl_Reader(), path)
+    return made.numbers
 
 
 def write_iges(
@@ -86,34 +98,60 @@ def write_iges(
     tolerance: float = 1e-4,
     unit: str = "mm",
     name: str = _NAME,
+    quads: Quads = (),
 ) -> dict[str, Any]:
     """The surface in an IGES file (5.3).
 
-    The options exact, faces, tolerance, unit and name are those of `write_step`.
+    The options exact, faces, tolerance, unit, name and quads are those of `write_step`.
     """
     placed = _in_unit(path, surface, unit)
     # The writer takes shapes for millimetres and converts them.
-    shape, found, _ = _shape(_scaled(placed, _UNITS[unit][1]), exact, faces, tolerance)
+    made = _made(_scaled(placed, _UNITS[unit][1]), exact, faces, tolerance, quads)
     _silence()
-    writer = IGESControl_Writer(_UNITS[unit][0], _AS_TOPOLOGY)
-    _require(bool(writer.AddShape(shape)), "convert the shape to IGES")
+    IGESControl_Controller.Init_s()
+    Interface_Static.SetIVal_s("write.iges.brep.mode", _AS_TOPOLOGY)
+    Interface_Static.SetCVal_s("write.iges.unit", _UNITS[unit][0])
+    writer = IGESCAFControl_Writer()
+    writer.SetColorMode(True)
+    _require(bool(writer.Transfer(document_of(made.shape, made.colours))), "convert the shape to IGES")
     writer.ComputeModel()
     _sign_iges(writer, _plain(name))
     Path(path).write_bytes(_iges_text(writer.Model()))
-    return found
+    if not exact:
+        made.numbers["valid"] = _sound(IGESControl_Reader(), path)
+    return made.numbers
 
 
-def _shape(surface: OrbifoldSurface, exact: bool, faces: int, tolerance: float) -> tuple[Any, dict[str, Any], bool]:
-    """The shape to write, what it is in numbers, and whether it is one periodic face."""
+class _Made(NamedTuple):
+    """A shape to write: the colours of its faces (F, 3); what it is in numbers; seamed: whether a face meets itself,
+    at a seam or a vertex.
+    """
+
+    shape: Any
+    colours: NDArray[np.float64] | None
+    numbers: dict[str, Any]
+    seamed: bool
+
+
+def _made(surface: OrbifoldSurface, exact: bool, faces: int, tolerance: float, quads: Quads) -> _Made:
     if exact:
         patches = patches_of(surface)
-        return shape_of(patches), {}, isinstance(patches, PeriodicPatch)
+        return _Made(shape_of(patches), None, {}, isinstance(patches, PeriodicPatch))
     if surface.triangulation.crease is not None:
         raise FitError("a few faces would round the creases of the surface off; write its exact patches (exact=True)")
-    few = fitted(surface, faces or None, tolerance)
-    shape = spline_shape(few, surface)
-    found = described(few, surface, tolerance) | {"valid": bool(BRepCheck_Analyzer(shape).IsValid())}
-    return shape, found, False
+    few = fitted(surface, faces or None, tolerance, quads)
+    numbers, found = described(few, surface, tolerance), face_colours(surface, few.domain)
+    if found is not None:
+        numbers["divided"] = found.divided
+    seamed = bool(few.domain.meets_itself.any())
+    return _Made(spline_shape(few, surface), None if found is None else found.rgb, numbers, seamed)
+
+
+def _sound(reader: Any, path: Path) -> bool:
+    """Whether Open CASCADE finds valid what it reads of a file."""
+    reader.ReadFile(str(path))
+    reader.TransferRoots()
+    return bool(BRepCheck_Analyzer(reader.OneShape()).IsValid())
 
 
 def _in_unit(path: Path, surface: OrbifoldSurface, unit: str) -> OrbifoldSurface:

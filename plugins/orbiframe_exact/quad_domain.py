@@ -11,7 +11,7 @@ from scipy.optimize import Bounds, LinearConstraint, milp
 from scipy.sparse import coo_array
 
 from orbiframe import FitError, OrbifoldSurface, Points
-from orbiframe.delaunay import domain_for, vertex_points
+from orbiframe.delaunay import delaunay_of_vertices, domain_for, vertex_points
 from orbiframe.triangulations import GeodesicTriangulation
 from orbiframe_exact.quad_points import QuadPoints, settled
 
@@ -23,6 +23,8 @@ Bools = NDArray[np.bool_]
 _PAIR, _NOT_CONVEX = 20.0, -5.0
 # Readers of CAD files may mistake a face that meets a vertex twice; it is taken where there is no other way.
 _MEETS_ITSELF = -10.0
+# What a block of the input is worth more, and the least quality of quadrilaterals between corners of blocks.
+_BLOCK, _SQUARE_ENOUGH = 2.0, 0.1
 # How many vertices more are tried, as shares of those asked for.
 _MORE = (0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.5)
 _LOOK = np.linspace(0.02, 0.98, 7)
@@ -34,7 +36,8 @@ class QuadDomain:
 
     Side k of a quadrilateral runs from its corner k to the next: along s at t = 0, along t at s = 1, and back. edge:
     (Q, 4), the edge at every side; rising: (Q, 4), whether the parameter of the edge grows with s or t there; ends:
-    (E, 2), the vertices where every edge begins and ends; orientable: whether all can be seen from one side.
+    (E, 2), the vertices where every edge begins and ends; orientable: whether all can be seen from one side; triangles:
+    those that are paired, and pair: (F,), the quadrilateral of each.
     """
 
     points: QuadPoints
@@ -42,11 +45,19 @@ class QuadDomain:
     rising: Bools
     ends: Ints
     orientable: bool
+    triangles: GeodesicTriangulation
+    pair: Ints
 
     @property
     def count(self) -> int:
         """Number of quadrilaterals."""
         return len(self.edge)
+
+    @property
+    def meets_itself(self) -> Bools:
+        """Which quadrilaterals have a vertex twice, (Q,)."""
+        first = np.where(self.rising == np.array([True, True, False, False]), 0, 1)
+        return _has_twins(self.ends[self.edge, first])
 
     def sides_of_edges(self) -> Ints:
         """The two sides 4 q + k at every edge, (E, 2)."""
@@ -58,49 +69,79 @@ def default_count(surface: OrbifoldSurface) -> int:
     return 16 + 8 * abs(int(surface.orbifold.euler_characteristic))
 
 
-def quad_domain(surface: OrbifoldSurface, count: int) -> QuadDomain:
+def quad_domain(surface: OrbifoldSurface, count: int, blocks: Ints | None = None) -> QuadDomain:
     """About `count` quadrilaterals: a perfect matching of triangles of greatest quality, of V = count + chi vertices.
 
     The quality of a pair is the least sine between the two directions on the surface, or the root of the least area
     element over the greatest. Pairs that meet a vertex twice come last. Where triangles cannot be paired, or a
     quadrilateral would be glued to itself, there are more vertices. Raises FitError where that does not help.
+
+    blocks: (B, 4), quadrilaterals of vertices of the input. Their corners are the vertices then, and a pair that is one
+    of them is worth more; they count for nothing where a pair comes out far from square.
     """
+    if blocks is not None:
+        found = _of_blocks(surface, blocks)
+        if found is not None:
+            return found
     chi = int(surface.orbifold.euler_characteristic)
     for more in _MORE:
         vertices = max(count + chi, 1) + math.ceil(more * count)
         sites = domain_for(surface.orbifold, surface.triangulation, vertices, (1, 0, 0))
-        found = _paired(surface, sites)
+        found, _ = _paired(surface, sites)
         if found is not None:
             return found
     raise FitError(f"no {count} faces cover this surface; ask for more of them, such as --faces {2 * count}")
 
 
-def _paired(surface: OrbifoldSurface, sites: GeodesicTriangulation) -> QuadDomain | None:
+def _of_blocks(surface: OrbifoldSurface, blocks: Ints) -> QuadDomain | None:
+    """Quadrilaterals between the corners of blocks of the input; None where one is bad."""
+    triangulation = surface.triangulation
+    start = GeodesicTriangulation.of_map(triangulation)
+    number = np.empty(len(triangulation.points), dtype=np.intp)
+    number[triangulation.polyhedron.triangles] = start.vertex
+    corners, place = np.unique(blocks, return_inverse=True)
+    sites, vertex = delaunay_of_vertices(start, number[corners])
+    found, quality = _paired(surface, sites, vertex[place.reshape(blocks.shape)])
+    return found if quality >= _SQUARE_ENOUGH else None
+
+
+def _paired(
+    surface: OrbifoldSurface, sites: GeodesicTriangulation, blocks: Ints | None = None
+) -> tuple[QuadDomain | None, float]:
+    """The pairs that are worth most, None where none cover all, and the least quality of one."""
     halfedge, vertex = np.arange(3 * sites.face_count), sites.vertex.ravel()
     start, end = vertex, vertex[_following(halfedge)]
     inner = np.flatnonzero(sites.reference & (halfedge // 3 != sites.twin // 3))
     corners, sides, back = _quads(sites, inner)
     corner = np.where(back, end[sides], start[sides])
-    twice = (np.diff(np.sort(corner, axis=1), axis=1) == 0).any(axis=1)
+    twice = _has_twins(corner)
     points = QuadPoints(surface, corners, sites.patch[inner // 3], sites.placement[inner // 3])
-    worth = _PAIR + _quality(points) + np.where(twice, _MEETS_ITSELF, 0.0)
+    quality = _quality(points)
+    worth = _PAIR + quality + np.where(twice, _MEETS_ITSELF, 0.0)
+    if blocks is not None:
+        worth += np.where(_are_among(corner, blocks), _BLOCK, 0.0)
     chosen = _matching(np.stack([inner, sites.twin[inner]]) // 3, worth, sites.face_count)
     if chosen is None:
-        return None
+        return None, 0.0
     sides, back = sides[chosen], back[chosen]
     reference = np.minimum(sides, sites.twin[sides])
     edges, edge = np.unique(reference, return_inverse=True)
-    if (np.diff(np.sort(edge.reshape(sides.shape), axis=1), axis=1) == 0).any():
-        return None
+    if _has_twins(edge.reshape(sides.shape)).any():
+        return None, 0.0
+    pair = np.empty(sites.face_count, dtype=np.intp)
+    pair[inner[chosen] // 3] = pair[sites.twin[inner[chosen]] // 3] = np.arange(len(chosen))
     along = ((sides == reference) | sites.same[sides]) ^ back
     weighted = corners[chosen] * _weights(surface, sites)[corner[chosen]][..., None]
-    return QuadDomain(
+    found = QuadDomain(
         QuadPoints(surface, weighted, points.patch[chosen], points.placement[chosen]),
         edge.reshape(sides.shape),
         along ^ np.array([False, False, True, True]),
         np.stack([start[edges], end[edges]], axis=1),
         surface.orbifold.orientable,
+        sites,
+        pair,
     )
+    return found, float((quality - twice)[chosen].min())
 
 
 def _quads(sites: GeodesicTriangulation, inner: Ints) -> tuple[Floats, Ints, Bools]:
@@ -149,6 +190,17 @@ def _weights(surface: OrbifoldSurface, sites: GeodesicTriangulation) -> Floats:
     basis = surface.basis
     d = basis.jets(Points(points.patch, points.x), surface.coefficients, 1)  # type: ignore[attr-defined]
     return np.asarray(np.linalg.norm(np.cross(d[1], d[2]), axis=1) ** 0.25)
+
+
+def _are_among(rows: Ints, others: Ints) -> Bools:
+    """Whether the numbers of a row are those of one of the others, in any order, (n,)."""
+    known = {tuple(row) for row in np.sort(others, axis=1).tolist()}
+    return np.array([tuple(row) in known for row in np.sort(rows, axis=1).tolist()])
+
+
+def _has_twins(rows: Ints) -> Bools:
+    """Whether some number of a row is there twice, (n,)."""
+    return np.asarray((np.diff(np.sort(rows, axis=1), axis=1) == 0).any(axis=1))
 
 
 def _following(halfedge: Ints) -> Ints:

@@ -10,12 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from orbiframe import Registry
 from orbiframe.files import require_apart
+from orbiframe.fitting import add_boundary
 
 if TYPE_CHECKING:
     from orbiframe_fields.vertex_curvature import VertexCurvature
-
-
-_BOUNDARY = ("error", "cap", "collar", "double", "auto")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -25,7 +23,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("-o", "--output", metavar="OUT", type=Path, required=True, help="the numbers at the vertices: .ply, .vtu, .csv")
     add("--config", metavar="FILE.toml", type=Path, help="components and options of the fit")
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=2000")
-    add("--boundary", choices=_BOUNDARY, help="of an open mesh: how it is closed for the map; default error")
+    add_boundary(parser)
     add("--json", action="store_true", help="print one JSON object instead of the summary")
     parser.set_defaults(run=run)
 

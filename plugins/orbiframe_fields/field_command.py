@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from orbiframe import Registry, UsageError
 from orbiframe.files import require_apart
+from orbiframe.fitting import add_boundary
 
 if TYPE_CHECKING:
     from orbiframe_fields.mesh_field import MeshField
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
 
 # Outliers that are named in the summary; all are in the JSON.
 _NAMED = 12
-_BOUNDARY = ("error", "cap", "collar", "double", "auto")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -36,7 +36,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add("--config", metavar="FILE.toml", type=Path, help="components and options of the fit of the surface")
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=2000")
-    add("--boundary", choices=_BOUNDARY, help="of an open mesh: how it is closed for the map; default error")
+    add_boundary(parser)
     add("--json", action="store_true", help="print one JSON object instead of the summary")
     parser.set_defaults(run=run)
 

@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import OrbifoldSurface, Points, Polyhedron, Registry, UsageError, load_surface, read
+from orbiframe.fitting import add_boundary
 from orbiframe_fields.fitted_surfaces import fitted_surfaces
 from orbiframe_fields.mesh_field import SURFACE, side_by_side, tessellated, vertices_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
-
-_BOUNDARY = ("error", "cap", "collar", "double", "auto")
 
 
 class InputSurfaces(NamedTuple):
@@ -48,7 +47,7 @@ def add_surface_arguments(parser: argparse.ArgumentParser, *, boundary: bool) ->
     add("--config", metavar="FILE.toml", type=Path, help="components and options of the fit of the surface")
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=2000")
     if boundary:
-        add("--boundary", choices=_BOUNDARY, help="of an open mesh: how it is closed for the map; default error")
+        add_boundary(parser)
     add("--json", action="store_true", help="print one JSON object instead of the summary")
 
 

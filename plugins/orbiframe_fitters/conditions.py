@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array, diags_array, vstack
 
 from orbiframe import Basis, DifferentiableBasis, FitError, Samples
-from orbiframe_fitters.least_squares import chunks
+from orbiframe_fitters.chunks import chunks
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]

@@ -39,14 +39,14 @@ class Trial(NamedTuple):
         (generalised cross-validation; Craven and Wahba, 1979), where S takes data to the fit and its trace is estimated
         from signs drawn at random (Hutchinson, 1990); data without noise get `least`.
         """
-        ladder = least * _LADDER
+        ladder, drawn = least * _LADDER, self._drawn()
         if noise is not None:
-            residuals = (self._scored(fairing)[0] for fairing in ladder)
+            residuals = (self._scored(fairing, drawn)[0] for fairing in ladder)
             fitting = [fairing for fairing, rms in zip(ladder, residuals, strict=True) if rms <= noise]
             return float(max(fitting, default=least))
         best, chosen = np.inf, least
         for fairing in ladder:
-            rms, freedom = self._scored(fairing)
+            rms, freedom = self._scored(fairing, drawn)
             score = rms / max(freedom, 1e-3)
             if score < (_GAIN if chosen == least else 1.0) * best:
                 best, chosen = score, fairing
@@ -54,17 +54,20 @@ class Trial(NamedTuple):
                 break
         return float(chosen)
 
-    def _scored(self, fairing: float) -> tuple[float, float]:
-        """The rms of the residual of one coordinate, and the share of the data that is left free."""
+    def _drawn(self) -> _Drawn:
         signs = np.random.default_rng(0).choice([-1.0, 1.0], size=(len(self.weights), _PROBES))
         data = self.weights[:, None] * np.concatenate([self.values, signs], axis=1)
+        return _Drawn(np.asarray(self.rows.T @ data), np.asarray(self.rows.T @ signs))
+
+    def _scored(self, fairing: float, drawn: _Drawn) -> tuple[float, float]:
+        """The rms of the residual of one coordinate, and the share of the data that is left free."""
         try:
-            fit: Floats = np.asarray(self.rows @ solved(self.gram + fairing * self.stiff, self.rows.T @ data))
+            found = solved(self.gram + fairing * self.stiff, drawn.right)
         except FitError:
             return np.inf, 1.0
         split, share = self.values.shape[1], self.weights / self.weights.sum()
-        residual = self._counted(self.values - fit[:, :split])
-        trace = np.einsum("np,np->", signs, fit[:, split:]) / _PROBES
+        residual = self._counted(self.values - self.rows @ found[:, :split])
+        trace = np.vdot(drawn.signs, found[:, split:]) / _PROBES
         return float(np.sqrt(share @ residual)), float(1 - trace / len(self.weights))
 
     def _counted(self, residual: Floats) -> Floats:
@@ -72,3 +75,10 @@ class Trial(NamedTuple):
         if self.normals is None:
             return np.asarray((residual**2).mean(axis=1))
         return np.asarray(np.einsum("ni,ni->n", residual, self.normals) ** 2)
+
+
+class _Drawn(NamedTuple):
+    """Right-hand sides of the values and of signs drawn at random, (size, d + p), and the signs as seen by the rows."""
+
+    right: Floats
+    signs: Floats

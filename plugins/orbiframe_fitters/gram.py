@@ -17,22 +17,22 @@ _DENSE = 1e8  # numbers of which a dense matrix may have at most so many
 class Gram:
     """The matrices A^T W_k A for sparse rows A and k weights of each row, dense up to a size, beyond it sparse.
 
-    most: up to how many numbers they are dense.
+    most: up to how many numbers they are dense. upper: their upper triangles then, (size, size, kinds), else None.
     """
 
     def __init__(self, size: int, kinds: int = 1, most: float | None = None) -> None:
         self.size = size
-        self._dense = (
+        self.upper = (
             np.zeros((size, size, kinds)) if size * size * kinds <= (_DENSE if most is None else most) else None
         )
-        self._sparse = [csr_array((size, size)) for _ in range(0 if self._dense is not None else kinds)]
+        self._sparse = [csr_array((size, size)) for _ in range(0 if self.upper is not None else kinds)]
 
     def add(self, rows: csr_array, weights: Floats) -> None:
         """Add rows (n, size) with weights (n,) or (n, kinds)."""
         weights = np.ascontiguousarray(weights.reshape(len(weights), -1))
-        if self._dense is not None:
+        if self.upper is not None:
             rows.sort_indices()
-            self._add_dense(rows, weights, self._dense)
+            self._add_dense(rows, weights, self.upper)
             return
         turned = rows.T.tocsr()
         for kind, weight in enumerate(weights.T):
@@ -49,10 +49,10 @@ class Gram:
 
     def matrices(self) -> list[Floats] | list[csr_array]:
         """The symmetric matrices, one of each kind."""
-        if self._dense is None:
+        if self.upper is None:
             return self._sparse
-        found = [np.empty((self.size, self.size)) for _ in range(self._dense.shape[2])]
-        for _ in in_threads(lambda kind: _mirror(self._dense, kind, found[kind]), range(len(found))):
+        found = [np.empty((self.size, self.size)) for _ in range(self.upper.shape[2])]
+        for _ in in_threads(lambda kind: _mirror(self.upper, kind, found[kind]), range(len(found))):
             pass
         return found
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,15 +12,14 @@ from scipy.sparse import csr_array, diags_array
 
 from orbiframe import Basis, DifferentiableBasis, FitError, Samples, UsageError
 from orbiframe.functions import PreparedFitter
-from orbiframe.meshes import curve_order
+from orbiframe_fitters.chunks import chunks
 from orbiframe_fitters.cross_validation import Trial
 from orbiframe_fitters.energy import FAIRING, Energy, energy_of
+from orbiframe_fitters.few_samples import few_samples
 from orbiframe_fitters.gram import Gram
 from orbiframe_fitters.normal_equations import solved, solver_of
 
 Floats = NDArray[np.float64]
-
-_CHUNK = 1 << 14  # samples whose derivatives are in memory at one time
 
 
 class LeastSquares(PreparedFitter):
@@ -60,9 +59,12 @@ class LinearFit(NamedTuple):
     fairing: float
 
 
-def linear_fit(basis: Basis, samples: Samples, fairing: float | None) -> LinearFit:
-    """The linear least squares fit; without a given fairing as much as the samples ask for, see `LeastSquares`."""
-    found = equations(basis, samples, fairing)
+def linear_fit(basis: Basis, samples: Samples, fairing: float | None, fair: Samples | None = None) -> LinearFit:
+    """The linear least squares fit; without a given fairing as much as the samples ask for, see `LeastSquares`.
+
+    fair: the samples over which fairness is summed up; by default as few as stand for all.
+    """
+    found = equations(basis, samples, fairing, fair)
     return LinearFit(solved(found.matrix, found.right), found.fairing)
 
 
@@ -88,27 +90,29 @@ class Equations(NamedTuple):
         return csr_array((weighted.data, place), shape=(weighted.shape[1], self.total))
 
 
-def equations(basis: Basis, samples: Samples, fairing: float | None) -> Equations:
+def equations(basis: Basis, samples: Samples, fairing: float | None, fair: Samples | None = None) -> Equations:
     """The equations of `linear_fit`."""
     require_values_alone(samples)
     require_rows(basis, samples, fairing)
-    energy = None if fairing == 0 else energy_of(basis, samples)
+    fair = samples if fairing == 0 else few_samples(basis, samples).fair if fair is None else fair
+    energy = None if fairing == 0 else energy_of(basis, fair)
     gram, stiff, right = Gram(basis.size), Gram(basis.size), np.zeros((basis.size, samples.values.shape[1]))
     all_rows: list[csr_array] = []
     all_weights: list[Floats] = []
     order, values = [], []
     for part, chosen in chunks(samples):
-        jets = _jets(basis, part, energy)
+        jets = _jets(basis, part, energy if fair is samples else None)
         gram.add(jets[0], part.weights)
         right += jets[0].T @ (part.weights[:, None] * part.values)
-        if energy is not None:
-            for rows in energy.rows(jets):
-                stiff.add(rows, energy.weights(chosen, part.stretch))
+        if fair is samples:
+            _add_energy(stiff, energy, jets, part, chosen)
         counted = np.flatnonzero(part.weights > 0)
         all_rows.append(csr_array(jets[0][counted]))
         all_weights.append(part.weights[counted])
         values.append(part.values[counted])
         order.append(chosen[counted])
+    for part, chosen in () if fair is samples else chunks(fair):
+        _add_energy(stiff, energy, _jets(basis, part, energy), part, chosen)
     matrix: Any = gram.matrices()[0]
     kept = all_rows, all_weights, order, len(samples.weights)
     if energy is None:
@@ -121,6 +125,14 @@ def equations(basis: Basis, samples: Samples, fairing: float | None) -> Equation
         trial = Trial(rows, *data, matrix, bend, normals)
         amount = trial.fairing(amount, samples.noise)
     return Equations(matrix + amount * bend, right, amount, *kept)
+
+
+def _add_energy(
+    stiff: Gram, energy: Energy | None, jets: list[csr_array], part: Samples, chosen: NDArray[np.intp]
+) -> None:
+    """Add what some samples say of an energy, if there is one."""
+    for rows in energy.rows(jets) if energy else ():
+        stiff.add(rows, energy.weights(chosen, part.stretch))  # type: ignore[union-attr]
 
 
 def _normals(basis: Basis, samples: Samples, order: list[NDArray[np.intp]], coefficients: Floats) -> Floats | None:
@@ -170,15 +182,6 @@ def require_rows(basis: Basis, samples: Samples, fairing: float | None) -> None:
             f"{count} samples do not determine {basis.size} functions without fairing; raise the option fairing, lower "
             "the option size, or use more samples"
         )
-
-
-def chunks(samples: Samples) -> Iterator[tuple[Samples, NDArray[np.intp]]]:
-    """The samples patch by patch and near ones together: they share lifts, and places of the matrix in the cache."""
-    order = curve_order(samples.points.x)
-    order = order[np.argsort(samples.points.patch[order], kind="stable")]
-    for begin in range(0, len(order), _CHUNK):
-        chosen = order[begin : begin + _CHUNK]
-        yield samples.take(chosen), chosen
 
 
 def _jets(basis: Basis, samples: Samples, energy: Energy | None) -> list[csr_array]:

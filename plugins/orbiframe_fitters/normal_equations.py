@@ -20,7 +20,6 @@ Solver = Callable[[Floats], Floats]
 _SHIFTS = (1e-13, 1e-12, 1e-11)
 _RESIDUAL = 1e-9
 _MOST_STEPS = 60
-_NEARLY = 1e-4
 _FILLED = 0.1  # of a matrix; a fuller one is factored as a dense one
 
 
@@ -38,18 +37,18 @@ def solved(matrix: Floats | csr_array, right: Floats) -> Floats:
 def solver_of(matrix: Floats | csr_array) -> Solver:
     """How to find what `solved` gives for any right-hand sides, each factor being made once, when it is needed."""
     diagonal = np.asarray(matrix.diagonal())
-    _require_seen(diagonal)
+    require_seen(diagonal)
     scale = 1 / np.sqrt(diagonal)
-    scaled = _scaled(matrix, scale)
+    unit = scaled(matrix, scale)
     factors: dict[float, Solver | None] = {}
 
     def solve(right: Floats) -> Floats:
         wanted = scale[:, None] * right
         for shift in _SHIFTS:
             if shift not in factors:
-                factors[shift] = _factored(scaled, shift)
+                factors[shift] = _factored(unit, shift)
             factor = factors[shift]
-            found = None if factor is None else _iterated(scaled, wanted, factor)
+            found = None if factor is None else _iterated(unit, wanted, factor)
             if found is not None:
                 return np.asarray(scale[:, None] * found)
         raise _undetermined(len(diagonal))
@@ -57,42 +56,7 @@ def solver_of(matrix: Floats | csr_array) -> Solver:
     return solve
 
 
-def nearly_solved(blocks: list[list[Floats]] | list[list[csr_array]], right: Floats) -> Floats:
-    """The solution (size, d) of a system of d by d blocks, to a few digits: enough for a step of Newton's method.
-
-    By conjugate gradients, with the solutions of the diagonal blocks, each factored by itself: for many functions far
-    less work than the factors of the whole. Raises FitError for an unknown that does not occur.
-    """
-    count = range(right.shape[1])
-    diagonal = np.stack([np.asarray(blocks[a][a].diagonal()) for a in count], axis=1)
-    _require_seen(diagonal.min(axis=1))
-    scale = 1 / np.sqrt(diagonal)
-    solvers = [_first_factored(_scaled(blocks[a][a], scale[:, a])) for a in count]
-
-    def image(x: Floats) -> Floats:
-        moved = scale * x
-        return np.stack([scale[:, a] * sum(blocks[a][b] @ moved[:, b] for b in count) for a in count], axis=1)
-
-    def solve(residual: Floats) -> Floats:
-        return np.stack([solvers[a](residual[:, a]) for a in count], axis=1)
-
-    x, residual = np.zeros_like(right), scale * right
-    enough = _NEARLY * np.linalg.norm(residual)
-    move = direction = solve(residual)
-    energy = float(np.vdot(residual, move))
-    for _ in range(_MOST_STEPS):
-        if np.linalg.norm(residual) <= enough:
-            break
-        bent = image(direction)
-        step = energy / max(float(np.vdot(direction, bent)), np.finfo(float).tiny)
-        x, residual = x + step * direction, residual - step * bent
-        move = solve(residual)
-        before, energy = energy, float(np.vdot(residual, move))
-        direction = move + energy / before * direction
-    return np.asarray(scale * x)
-
-
-def _first_factored(matrix: Floats | csr_array) -> Solver:
+def first_factored(matrix: Floats | csr_array) -> Solver:
     """How to solve with a matrix and the least shift that makes it positive definite."""
     for shift in (*_SHIFTS, 1e-9, 1e-6):
         if (solve := _factored(matrix, shift)) is not None:
@@ -108,7 +72,8 @@ def _undetermined(size: int) -> FitError:
     )
 
 
-def _require_seen(diagonal: Floats) -> None:
+def require_seen(diagonal: Floats) -> None:
+    """Raises FitError for a function that no sample sees, by the diagonal of the equations."""
     unseen = np.flatnonzero(~(diagonal > 0) | ~np.isfinite(diagonal))
     if len(unseen):
         raise FitError(
@@ -117,12 +82,12 @@ def _require_seen(diagonal: Floats) -> None:
         )
 
 
-def _scaled(matrix: Floats | csr_array, scale: Floats) -> Floats | csr_array:
+def scaled(matrix: Floats | csr_array, scale: Floats) -> Floats | csr_array:
     """The matrix with a unit diagonal; dense where it is not worth being sparse."""
     if isinstance(matrix, np.ndarray):
         return scale[:, None] * matrix * scale
-    scaled = csr_array(diags_array(scale) @ matrix @ diags_array(scale))
-    return scaled.toarray() if scaled.nnz > _FILLED * len(scale) ** 2 and len(scale) <= 3000 else scaled
+    unit = csr_array(diags_array(scale) @ matrix @ diags_array(scale))
+    return unit.toarray() if unit.nnz > _FILLED * len(scale) ** 2 and len(scale) <= 3000 else unit
 
 
 def _factored(matrix: Floats | csr_array, shift: float) -> Solver | None:

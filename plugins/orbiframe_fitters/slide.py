@@ -10,18 +10,18 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from orbiframe import DifferentiableBasis, Points, Samples
-from orbiframe.functions import foot_points, foot_step, moved
+from orbiframe.functions import feet_of, foot_step, moved
+from orbiframe_fitters.chunks import chunks
+from orbiframe_fitters.coupled import KIND, coupled, nearly_solved
 from orbiframe_fitters.energy import Energy, energy_of, spacing
 from orbiframe_fitters.gram import Gram
 from orbiframe_fitters.kinks import Kinks
-from orbiframe_fitters.least_squares import chunks
-from orbiframe_fitters.normal_equations import nearly_solved, solved
+from orbiframe_fitters.normal_equations import solved
 from orbiframe_fitters.sliding_data import PAIRS, Feet, Schedule, away_from, linearised, products
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-_KIND = np.array([[0, 1, 2], [1, 3, 4], [2, 4, 5]])
 # A foot moves at most so many lengths of fairness in one step, and the surface is stretched at most so much in fairing.
 _LONGEST_STEP = 0.3
 _MOST_STRETCH = 30.0
@@ -41,6 +41,8 @@ _ALL_STEPS = 2
 _DIRECT = 200
 # How much a kink across a hair counts against a distance of what it would lift at the spacing of the functions.
 _KINK = 10.0
+# How much a jump of the slope within the surface counts against a kink, beside curved facets, and if all are flat.
+_SLIDE = 1e-5, 1e-7
 
 
 class _Fairness(NamedTuple):
@@ -52,16 +54,26 @@ class _Fairness(NamedTuple):
 
 
 class Slide:
-    """The data of a sliding fit, chunk by chunk, and its steps."""
+    """The data of a sliding fit, chunk by chunk, and its steps.
 
-    def __init__(self, basis: DifferentiableBasis, samples: Samples, schedules: tuple[Schedule, ...]) -> None:
-        self.basis, self.samples, self.schedules = basis, samples, schedules
-        self.energy = energy_of(basis, samples) if any(schedule.fairing for schedule in schedules) else None
+    fair: the samples over which fairness is summed up, by default those of the data.
+    """
+
+    def __init__(
+        self,
+        basis: DifferentiableBasis,
+        samples: Samples,
+        schedules: tuple[Schedule, ...],
+        fair: Samples | None = None,
+    ) -> None:
+        self.basis, self.fair, self.schedules = basis, samples if fair is None else fair, schedules
+        self.energy = energy_of(basis, self.fair) if any(schedule.fairing for schedule in schedules) else None
         self.data = [
             part.take(np.flatnonzero(part.weights > 0)) for part, _ in chunks(samples) if (part.weights > 0).any()
         ]
         self.fairness = self._fairness(self.energy) if self.energy else []
         self.kinks, self.creased = Kinks.of(basis), samples.still is not None
+        self.flat = samples.still is not None and bool(samples.still.all())
         self.spacing = spacing(basis, samples)
         length = np.full(len(samples.weights), self.spacing) if samples.length is None else samples.length
         self.longest = [
@@ -72,7 +84,7 @@ class Slide:
 
     def _fairness(self, energy: Energy) -> list[_Fairness]:
         found = []
-        for part, chosen in chunks(self.samples):
+        for part, chosen in chunks(self.fair):
             jets = self.basis.jet_matrices(part.points, energy.order)
             found.append(_Fairness(chosen, energy.rows(jets), jets[1:3]))
         return found
@@ -112,8 +124,7 @@ class Slide:
         gram, right = self._empty()
         longest = _LONGEST_STEP * self.spacing
         for part, _ in chunks(samples.take(np.flatnonzero(samples.weights > 0))):
-            points, _ = foot_points(self.basis, coefficients, part.points, part.values, longest, _ALL_STEPS)
-            jets = self.basis.jets(points, coefficients, 2)
+            points, _, jets = feet_of(self.basis, coefficients, part.points, part.values, longest, _ALL_STEPS)
             feet = Feet(points, self.basis.jet_matrices(points, 0), jets, part.values - jets[0])
             self._enter(gram, right, feet, part, schedule)
         trial = coefficients + self._solved(gram, right, coefficients, schedule)
@@ -188,14 +199,14 @@ class Slide:
             weights, wanted = self._smoothed(self.kinks, coefficients)
             gram.add(self.kinks.jump, weights)
             right += self.kinks.jump.T @ wanted
-        blocks: list[Any] = list(gram.matrices())
+        stiff: Any = csr_array((self.basis.size, self.basis.size))
         if self.energy is not None and schedule.fairing:
-            stiff: Any = schedule.fairing * self._stiffness(coefficients, self.energy)
+            stiff = schedule.fairing * self._stiffness(coefficients, self.energy)
             right -= stiff @ coefficients
-            blocks = [block + stiff if kind in (0, 3, 5) else block for kind, block in enumerate(blocks)]
-        rows = [[blocks[kind] for kind in line] for line in _KIND]
         if self.basis.size > _DIRECT and not self.creased:
-            return nearly_solved(rows, right)
+            return nearly_solved(coupled(gram, stiff), right)
+        blocks = [block + stiff if kind in (0, 3, 5) else block for kind, block in enumerate(gram.matrices())]
+        rows = [[blocks[kind] for kind in line] for line in KIND]
         return solved(_joined(rows), right.T.reshape(-1, 1)).reshape(3, -1).T
 
     @property
@@ -204,12 +215,17 @@ class Slide:
         return 0.0 if self.creased else None
 
     def _smoothed(self, kinks: Kinks, coefficients: Floats) -> tuple[Floats, Floats]:
-        """For each point of a hair the six entries of the form of its kink, (n, 6), and its right side, (n, 3)."""
+        """For each point of a hair the six entries of the form of its kink, (n, 6), and its right side, (n, 3).
+
+        What jumps within the surface counts a little too: nothing else holds the parameters of planes beside corners.
+        """
         normal, kink = kinks.seen(coefficients)
-        size = np.linalg.norm(kinks.across @ coefficients, axis=1)
-        weight = _KINK * self.spacing**4 / np.maximum(size, np.finfo(float).tiny)
+        size = np.maximum(np.linalg.norm(kinks.across @ coefficients, axis=1), np.finfo(float).tiny)
+        weight, slide = _KINK * self.spacing**4 / size, _SLIDE[self.flat]
         form = np.stack([normal[:, a] * normal[:, b] for a, b in PAIRS], axis=1)
-        return (weight / size)[:, None] * form, -(weight * kink)[:, None] * normal
+        form[:, [0, 3, 5]] += slide
+        wanted = kink[:, None] * normal + slide * (kinks.jump @ coefficients) / size[:, None]
+        return (weight / size)[:, None] * form, -weight[:, None] * wanted
 
     def _pinched(self, before: Floats, after: Floats) -> bool:
         """Whether a smooth surface shrinks too much somewhere; facets may, where an edge becomes sharp."""
@@ -223,7 +239,7 @@ class Slide:
         gram = Gram(self.basis.size, most=self._room)
         for part in self.fairness:
             chosen, rows, _ = part
-            stretch = np.minimum(1 / _elements(part, coefficients), _MOST_STRETCH * self.samples.stretch[chosen])
+            stretch = np.minimum(1 / _elements(part, coefficients), _MOST_STRETCH * self.fair.stretch[chosen])
             for row in rows:
                 gram.add(row, energy.weights(chosen, stretch))
         return gram.matrices()[0]

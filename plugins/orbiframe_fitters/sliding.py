@@ -58,14 +58,14 @@ class Sliding(Fitter):
             known = free.normals is not None and np.isfinite(free.normals).any()
             found = self.fit(basis, replace(free, fixed=None, normals=free.normals if known else None))
             return pinned(basis, samples, found, self.fairing)
-        first = linear_fit(basis, samples, self.fairing)
+        few = few_samples(basis, samples)
+        first = linear_fit(basis, samples, self.fairing, few.fair)
         if samples.values.shape[1] != 3 or not isinstance(basis, DifferentiableBasis):
             return first.coefficients
         schedules = self._schedules(basis, samples, first.fairing)
-        few = few_samples(basis, samples)
-        slide = Slide(basis, few, schedules)
+        slide = Slide(basis, few.data, schedules, few.fair)
         found = slide.from_start(first.coefficients, self.steps)
-        if few is samples or not self.steps:
+        if few.data is samples or not self.steps:
             return found
         return slide.with_all(found, samples, schedules[min(self.steps, len(schedules)) - 1])
 

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array, diags_array
 
 from orbiframe import Basis, DifferentiableBasis, FitError, Samples
+from orbiframe_fitters.chunks import chunks
 from orbiframe_fitters.conditions import Conditions, conditions_of
 from orbiframe_fitters.energy import energy_of
 from orbiframe_fitters.gram import Gram
-from orbiframe_fitters.least_squares import chunks
 from orbiframe_fitters.posterior import Posterior
 
 Floats = NDArray[np.float64]

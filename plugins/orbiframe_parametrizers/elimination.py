@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -13,12 +15,14 @@ from scipy.sparse import coo_array, csc_array, csr_array, diags_array
 from scipy.sparse.linalg import LinearOperator, SuperLU, cg, splu
 
 from orbiframe import MapError, Polyhedron
+from orbiframe.workers import chosen_solver
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 _DIGITS = 1e-5
 _PATIENCE = 25
+_KEPT = 4  # orders of the meshes before
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,11 +37,9 @@ class Elimination:
 
     @classmethod
     def of(cls, mesh: Polyhedron) -> Elimination:
-        """A good order for the edges of a mesh; found once for each mesh."""
+        """A good order for the edges of a mesh; found once for all meshes with the same faces."""
         if mesh not in _FOUND:
-            once = mesh.representative
-            order = elimination_order(len(mesh.vertices), mesh.tail[once], mesh.head[once])
-            _FOUND[mesh] = cls(order, np.argsort(order))
+            _FOUND[mesh] = _of_faces(_Faces(mesh))
         return _FOUND[mesh]
 
     def matrix(self, tail: Ints, head: Ints, entries: NDArray[Any], diagonal: NDArray[Any]) -> csc_array[Any]:
@@ -47,7 +49,9 @@ class Elimination:
         data = np.concatenate([entries, np.conj(entries), diagonal])
         return coo_array((data, (rows, columns)), shape=(len(self.order),) * 2).tocsc()
 
-    def solver(self, tail: Ints, head: Ints, entries: Floats, diagonal: Floats) -> Callable[[Floats], Floats]:
+    def solver(
+        self, tail: Ints, head: Ints, entries: NDArray[Any], diagonal: NDArray[Any]
+    ) -> Callable[[NDArray[Any]], NDArray[Any]]:
         """The solution of systems with that matrix for right sides (V,) or (V, k); numbered like the mesh.
 
         Raises MapError for a singular matrix.
@@ -57,6 +61,29 @@ class Elimination:
 
 
 _FOUND: WeakKeyDictionary[Polyhedron, Elimination] = WeakKeyDictionary()
+
+
+class _Faces:
+    """The faces of a mesh, which are equal where their corners are, wherever those lie in space."""
+
+    def __init__(self, mesh: Polyhedron) -> None:
+        self.mesh = mesh
+        numbers = (np.ascontiguousarray(array) for array in (mesh.offsets, mesh.tail))
+        self._sum = len(mesh.vertices), *(hashlib.sha256(array.data).digest() for array in numbers)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Faces) and self._sum == other._sum
+
+    def __hash__(self) -> int:
+        return hash(self._sum)
+
+
+@lru_cache(_KEPT)
+def _of_faces(faces: _Faces) -> Elimination:
+    mesh = faces.mesh
+    once = mesh.representative
+    order = elimination_order(len(mesh.vertices), mesh.tail[once], mesh.head[once])
+    return Elimination(order, np.argsort(order))
 
 
 def elimination_order(count: int, tail: Ints, head: Ints) -> Ints:
@@ -105,6 +132,19 @@ def minimum_degree_order(graph: csr_array[Any]) -> Ints:
     return order
 
 
+def solver_on(
+    mesh: Polyhedron, edges: tuple[Ints, Ints], entries: NDArray[Any], diagonal: NDArray[Any]
+) -> Callable[[NDArray[Any]], NDArray[Any]]:
+    """The solution of systems with a Hermitian matrix, see `Elimination.matrix`, by the solver that is chosen.
+
+    edges: tails and heads among those of the mesh. Raises MapError for a singular matrix.
+    """
+    chosen = chosen_solver()
+    if chosen is None:
+        return Elimination.of(mesh).solver(*edges, entries, diagonal)
+    return chosen(csc_array(_hermitian(*edges, entries, diagonal)))
+
+
 class Successive:
     """Solutions of symmetric positive definite systems on one set of vertices, each matrix near the one before.
 
@@ -124,11 +164,11 @@ class Successive:
         MapError for a singular matrix.
         """
         if self._near is not None:
-            matrix = _symmetric(*edges, entries, diagonal)
+            matrix = _hermitian(*edges, entries, diagonal)
             answer, found = by_conjugate_gradients(matrix, right, self._near, tolerance=_DIGITS, steps=_PATIENCE)
             if found:
                 return answer
-        self._near = Elimination.of(mesh).solver(*edges, entries, diagonal)
+        self._near = solver_on(mesh, edges, entries, diagonal)
         return self._near(right)
 
 
@@ -144,10 +184,10 @@ def by_conjugate_gradients(
     return np.asarray(answer), failure == 0
 
 
-def _symmetric(tail: Ints, head: Ints, entries: Floats, diagonal: Floats) -> csr_array[Any]:
+def _hermitian(tail: Ints, head: Ints, entries: NDArray[Any], diagonal: NDArray[Any]) -> csr_array[Any]:
     every = np.arange(len(diagonal))
     place = np.concatenate([tail, head, every]), np.concatenate([head, tail, every])
-    return coo_array((np.concatenate([entries, entries, diagonal]), place), shape=(len(every),) * 2).tocsr()
+    return coo_array((np.concatenate([entries, np.conj(entries), diagonal]), place), shape=(len(every),) * 2).tocsr()
 
 
 def factorised(matrix: csc_array[Any]) -> SuperLU:

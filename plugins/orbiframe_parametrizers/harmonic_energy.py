@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from scipy.sparse import bsr_array
 
 from orbiframe import Geometry, MapError, Triangulation
-from orbiframe_parametrizers.elimination import Elimination, by_conjugate_gradients, factorised
+from orbiframe.workers import chosen_solver
+from orbiframe_parametrizers.elimination import Elimination, by_conjugate_gradients, factorised, solver_on
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -90,7 +91,7 @@ class HarmonicEnergy:
         self.isometry = orbifold.atlas.isometry[start.transition[edges[self.crossing]]]
         self.weights = weights[edges]
         self.count = len(mesh.vertices)
-        self.elimination = Elimination.of(mesh)
+        self.mesh = mesh
         every = np.arange(self.count)
         rows, columns = np.concatenate([self.tail, self.head, every]), np.concatenate([self.head, self.tail, every])
         self._by_row = np.argsort(rows, kind="stable")
@@ -186,18 +187,19 @@ class HarmonicEnergy:
 
     def _real_solver(self, hessian: bsr_array[Any]) -> Callable[[Floats], Floats]:
         """Solves with the Hessian itself."""
-        order, place = (
-            (2 * k[:, None] + np.arange(2)).ravel() for k in (self.elimination.order, self.elimination.place)
-        )
+        chosen = chosen_solver()
+        if chosen is not None:
+            return chosen(hessian.tocsc())
+        elimination = Elimination.of(self.mesh)
+        order, place = ((2 * k[:, None] + np.arange(2)).ravel() for k in (elimination.order, elimination.place))
         factors = factorised(hessian.tocsr()[order][:, order].tocsc())
         return lambda r: np.asarray(factors.solve(r[order])[place])
 
     def _hermitian_solver(self, terms: Terms) -> Callable[[Floats], Floats]:
         """Solves with the complex linear part of the Hessian."""
-        order, place = self.elimination.order, self.elimination.place
         diagonal = np.trace(self._diagonal(terms), axis1=1, axis2=2) / 2
-        factors = factorised(self.elimination.matrix(self.tail, self.head, _complex_part(terms.tail_head), diagonal))
-        return lambda r: np.asarray(factors.solve(r.view(np.complex128)[order])[place]).view(np.float64)
+        solve = solver_on(self.mesh, (self.tail, self.head), _complex_part(terms.tail_head), diagonal)
+        return lambda r: np.ascontiguousarray(solve(r.view(np.complex128))).view(np.float64)
 
 
 def _complex_part(blocks: Floats) -> NDArray[np.complex128]:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import Polyhedron
-from orbiframe_parametrizers.elimination import Elimination
+from orbiframe_parametrizers.elimination import solver_on
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -123,7 +123,7 @@ def _solver(mesh: Polyhedron, weights: Floats, held: NDArray[np.bool_]) -> Calla
     i, j = mesh.tail, mesh.head
     diagonal = np.where(held, 1.0, np.bincount(i, weights=weights, minlength=len(held)))
     inner = np.flatnonzero(mesh.representative & ~held[i] & ~held[j])
-    solve = Elimination.of(mesh).solver(i[inner], j[inner], -weights[inner], diagonal)
+    solve = solver_on(mesh, (i[inner], j[inner]), -weights[inner], diagonal)
 
     def solution(right: Complexes) -> Complexes:
         found = solve(np.stack([right.real, right.imag], axis=1))

@@ -56,6 +56,19 @@ def orbiframe_components() -> list[Component]:
                 "area": "how much equal areas count against shape",
             },
         ),
+        Component(
+            "solver",
+            "metis",
+            "orbiframe_parametrizers.metis:metis",
+            "nested dissection by METIS, factors by SuperLU",
+        ),
+        Component(
+            "solver",
+            "pardiso",
+            "orbiframe_parametrizers.pardiso:pardiso",
+            "Intel's Pardiso, on x86-64",
+            extra="orbiframe[pardiso]",
+        ),
     ]
 
 

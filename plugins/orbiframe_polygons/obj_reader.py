@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from orbiframe import FormatError, Polyhedron
 from orbiframe_polygons.faces import colours, corners, offsets_of, require_colours, require_sizes, whole
+from orbiframe_polygons.obj_tags import marks
 from orbiframe_polygons.text import Text, read_text, shown
 
 Floats = NDArray[np.float64]
@@ -31,15 +32,15 @@ def read(path: Path) -> Polyhedron:
     """The polyhedron of an OBJ file: polygons, normals, and colours after the coordinates (`v x y z r g b`).
 
     Negative indices count back from where they stand. Names, groups and texture coordinates are skipped, and no
-    material file is opened. Normals are kept where all corners of each vertex have the same normal; where the file has
-    none, corners may name them anyhow. Raises FormatError
-    with the line for anything else that the format does not know, free-form curves included.
+    material file is opened. Tags `t crease 2/1/0 v w sharpness`, as OpenSubdiv has them, mark edges as sharp. Normals
+    are kept where all corners of each vertex have the same normal; where the file has none, corners may name them
+    anyhow. Raises FormatError with the line for anything else that the format does not know, free-form curves included.
 
     Source: Wavefront, Advanced Visualizer manual, appendix B1: Object files.
     """
     text = read_text(path, continued=True)
-    vertex, normal, face = (_starting(text, word) for word in (b"v", b"vn", b"f"))
-    _require_known(text, vertex | normal | face)
+    vertex, normal, face, tag = (_starting(text, word) for word in (b"v", b"vn", b"f", b"t"))
+    _require_known(text, vertex | normal | face | tag)
     vertices, colors = _vertices(text.only(vertex))
     directions = _normals(text.only(normal))
     faces = text.only(face).without_keyword(1)
@@ -48,7 +49,8 @@ def read(path: Path) -> Polyhedron:
     seen = [np.cumsum(kind, dtype=np.intp)[face] for kind in (vertex, normal)]
     points, pointers = _corners(faces, (seen[0], len(vertices)), (seen[1], len(directions)))
     normals = _per_vertex(points, pointers, directions, len(vertices))
-    return Polyhedron.from_corners(vertices, offsets_of(faces.words), points, normals=normals, colors=colors)
+    mesh = Polyhedron.from_corners(vertices, offsets_of(faces.words), points, normals=normals, colors=colors)
+    return replace(mesh, marked=marks(text.only(tag), len(vertices))) if tag.any() else mesh
 
 
 def _starting(text: Text, word: bytes) -> Bools:

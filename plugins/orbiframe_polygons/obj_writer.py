@@ -21,6 +21,7 @@ def write(path: Path, polyhedron: Polyhedron) -> None:
     """Write polygons, normals and vertex colours (`v x y z r g b`), each number with the digits that round-trip.
 
     Corners have normals of their own beside creases, and points of a texture (`vt u v`) where the polyhedron has some.
+    Edges that are marked as sharp are tags `t crease 2/1/0 v w sharpness`, as OpenSubdiv reads them.
 
     OBJ holds no opacity and no colours of faces: a warning says what was left out.
     """
@@ -34,7 +35,8 @@ def write(path: Path, polyhedron: Polyhedron) -> None:
     normals = polyhedron.normals
     vertices = table_text(columns_of(polyhedron.vertices, solid), start="v ")
     directions = [] if normals is None else [table_text(columns_of(normals), start="vn ")]
-    save(path, [], vertices, *directions, faces_text(polyhedron, lead="f", first=1, twice=normals is not None))
+    faces = faces_text(polyhedron, lead="f", first=1, twice=normals is not None)
+    save(path, [], vertices, *directions, faces, _tags(polyhedron))
 
 
 def _write_corners(path: Path, polyhedron: Polyhedron, colors: Floats | None) -> None:
@@ -51,7 +53,16 @@ def _write_corners(path: Path, polyhedron: Polyhedron, colors: Floats | None) ->
         *([] if textures is None else [table_text(columns_of(textures), start="vt ")]),
         *([] if normals is None else [table_text(columns_of(normals), start="vn ")]),
         _faces(polyhedron.offsets.tolist(), columns),
+        _tags(polyhedron),
     )
+
+
+def _tags(polyhedron: Polyhedron) -> Iterator[bytes]:
+    """A line for each edge that is marked as sharp, as OpenSubdiv has them."""
+    marked = polyhedron.marked
+    if marked is not None:
+        for (v, w), sharpness in zip(marked.ends.tolist(), marked.sharpness.tolist(), strict=True):
+            yield f"t crease 2/1/0 {v} {w} {sharpness!r}\n".encode("ascii")
 
 
 def _numbered(table: Floats | None) -> tuple[Floats | None, Ints]:

@@ -39,6 +39,7 @@ def orbiframe_components() -> list[Component]:
                 suffixes=suffixes,
                 welds=name == "stl",
                 textures=kind == "writer" and name in ("obj", "gltf"),
+                marks=kind == "writer" and name in ("obj", "ply"),
             )
             for name, (module, summary, suffixes) in FORMATS.items()
             for kind, verb in (("reader", "read"), ("writer", "write"))

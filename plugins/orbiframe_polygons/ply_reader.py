@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import FormatError, Polyhedron
+from orbiframe.meshes import MarkedEdges
 from orbiframe_polygons.faces import corners, offsets_of, require_colours, require_finite, require_sizes, whole
 from orbiframe_polygons.ply_body import Table, tables
 from orbiframe_polygons.ply_header import parse
@@ -19,14 +21,16 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 STRIPS = "tristrips"
+SHARPNESS = ("crease", "sharpness", "sharp")
 
 
 def read(path: Path) -> Polyhedron:
-    """The polyhedron of a PLY file: polygons, normals, colours of vertices and faces.
+    """The polyhedron of a PLY file: polygons, normals, colours of vertices and faces, edges marked as sharp.
 
-    Strips of triangles are read, each ended by -1 or by the end of its list. Other elements and properties are skipped.
-    Raises FormatError with the line or byte where header and body do not
-    fit, where an index is out of range and where a coordinate is not finite.
+    An element 'edge' with the properties vertex1, vertex2 and crease, sharpness or sharp marks edges where the number
+    is above 0. Strips of triangles are read, each ended by -1 or by the end of its list. Other elements and properties
+    are skipped. Raises FormatError with the line or byte where header and body do not fit, where an index is out of
+    range and where a coordinate is not finite.
 
     Source: G. Turk, The PLY Polygon File Format, 1994.
     """
@@ -41,7 +45,7 @@ def read(path: Path) -> Polyhedron:
     if vertices is None:
         raise FormatError(f"{path}: the element 'vertex' lacks one of the properties x, y and z")
     offsets, tail = _all_faces(path, found, len(vertices))
-    return Polyhedron.from_corners(
+    mesh = Polyhedron.from_corners(
         vertices,
         offsets,
         tail,
@@ -49,6 +53,18 @@ def read(path: Path) -> Polyhedron:
         colors=_colours(path, vertex),
         face_colors=None if face is None or STRIPS in found else _colours(path, face),
     )
+    return replace(mesh, marked=_marks(path, found["edge"], len(vertices))) if "edge" in found else mesh
+
+
+def _marks(path: Path, edge: Table, vertex_count: int) -> MarkedEdges | None:
+    """The edges that are marked as sharp; None where the element says nothing of that."""
+    known = [_columns(path, edge, ("vertex1", "vertex2", name)) for name in SHARPNESS]
+    rows = next((table for table in known if table is not None), None)
+    if rows is None:
+        return None
+    pairs = np.full(len(rows), 2, dtype=np.intp)
+    ends = corners(rows[:, :2].ravel(), pairs, vertex_count, edge.place).reshape(-1, 2)
+    return MarkedEdges.of(ends, rows[:, 2])
 
 
 def _columns(path: Path, table: Table, names: tuple[str, ...]) -> Floats | None:

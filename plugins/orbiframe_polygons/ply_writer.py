@@ -28,7 +28,7 @@ class Column:
 
 
 def write(path: Path, polyhedron: Polyhedron, *, ascii: bool = False, big_endian: bool = False) -> None:
-    """Write polygons, normals and colours of vertices and faces, coordinates as float64.
+    """Write polygons, normals, colours of vertices and faces, and edges marked as sharp, coordinates as float64.
 
     ascii: as text, with the digits that round-trip; big_endian: binary with the highest byte first. Colours are written
     as bytes where they count to 255, else as float64.
@@ -36,11 +36,15 @@ def write(path: Path, polyhedron: Polyhedron, *, ascii: bool = False, big_endian
     order = "" if ascii else ">" if big_endian else "<"
     vertex, face = _vertex_columns(polyhedron), _colour_columns(polyhedron.face_colors)
     count = "u1" if polyhedron.face_sizes.max(initial=0) < 256 else "u4"
-    header = _header(order, polyhedron, vertex, face, count)
+    edge = _edge_columns(polyhedron)
+    header = _header(order, polyhedron, vertex, face, edge, count)
     if ascii:
-        save(path, header, table_text([c.values for c in vertex]), faces_text(polyhedron, [c.values for c in face]))
+        marks = [table_text([c.values for c in edge])] if edge else []
+        rows = table_text([c.values for c in vertex]), faces_text(polyhedron, [c.values for c in face])
+        save(path, header, *rows, *marks)
         return
     body = _records(vertex, order).tobytes() + _face_bytes(polyhedron, face, order, count)
+    body += _records(edge, order).tobytes() if edge else b""
     path.write_bytes("\n".join([*header, ""]).encode("ascii") + body)
 
 
@@ -60,7 +64,18 @@ def _colour_columns(colors: NDArray[np.float64] | None) -> list[Column]:
     return [Column(name, kind, column) for name, column in zip(COLOURS, values.T, strict=False)]
 
 
-def _header(order: str, polyhedron: Polyhedron, vertex: list[Column], face: list[Column], count: str) -> list[str]:
+def _edge_columns(polyhedron: Polyhedron) -> list[Column]:
+    """The edges that are marked as sharp."""
+    marked = polyhedron.marked
+    if marked is None:
+        return []
+    ends = [Column(f"vertex{k + 1}", "i4", marked.ends[:, k]) for k in (0, 1)]
+    return [*ends, Column("crease", "f8", marked.sharpness)]
+
+
+def _header(
+    order: str, polyhedron: Polyhedron, vertex: list[Column], face: list[Column], edge: list[Column], count: str
+) -> list[str]:
     name = {"": "ascii", "<": "binary_little_endian", ">": "binary_big_endian"}[order]
     return [
         "ply",
@@ -70,6 +85,8 @@ def _header(order: str, polyhedron: Polyhedron, vertex: list[Column], face: list
         f"element face {polyhedron.face_count}",
         f"property list {NAMES[count]} int vertex_indices",
         *(f"property {NAMES[c.type]} {c.name}" for c in face),
+        *([f"element edge {len(edge[0].values)}"] if edge else []),
+        *(f"property {NAMES[c.type]} {c.name}" for c in edge),
         "end_header",
     ]
 

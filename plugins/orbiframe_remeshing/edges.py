@@ -39,6 +39,12 @@ class Edges(NamedTuple):
         place = np.minimum(np.searchsorted(self.key, self.other_key), len(self.key) - 1)
         return np.asarray((self.key[place] == self.other_key) | (self.c == self.d))
 
+    def among(self, ends: Ints | None) -> Bools:
+        """Whether each edge is one of those with given ends, (n, 2), (E,)."""
+        if ends is None:
+            return np.zeros(len(self.key), dtype=np.bool_)
+        return np.isin(self.key, _key(ends[:, 0], ends[:, 1], self.vertex_count))
+
 
 def edges_of(triangles: Ints, vertex_count: int) -> Edges:
     """The edges of a closed mesh. Raises FitError where two edges have the same ends: then vertices are too few."""

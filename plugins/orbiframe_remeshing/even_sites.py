@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe import OrbifoldSurface, Points
-from orbiframe.delaunay import delaunay, lloyd, vertex_points
+from orbiframe import FitError, OrbifoldSurface, Points
+from orbiframe.delaunay import Asked, crease_triangulation, creased, delaunay, lloyd, vertex_points
 from orbiframe.triangulations import GeodesicTriangulation
 from orbiframe_remeshing.surface_mesh import SurfaceMesh, element, jets_at
 
 Floats = NDArray[np.float64]
 
 _STEPS = 6
+# Sites on a surface with creases are vertices of its refined mesh, of which at most one in so many.
+_FINE = 4
 
 
 def surface_area(surface: OrbifoldSurface) -> float:
@@ -32,6 +36,28 @@ def even_mesh(surface: OrbifoldSurface, count: int, seed: int = 0) -> SurfaceMes
     for _ in range(_STEPS):
         current = lloyd(current, 1, element(jets_at(surface, vertex_points(current))) ** 2)
     return SurfaceMesh.at(surface, vertex_points(current), current.vertex)
+
+
+def creased_mesh(surface: OrbifoldSurface, count: int) -> SurfaceMesh:
+    """A triangulation of X/H with about `count` sites that lie about evenly in space, and the creases as edges.
+
+    Sites are vertices of the refined mesh, which is that fine. Raises FitError where there are too few of these, and
+    MapError where the creases find no place.
+    """
+    flat = surface.triangulation
+    most = len(flat.points) // _FINE
+    if count > most:
+        raise FitError(
+            f"{count} vertices on a surface with creases are more than {most}, a quarter of those of its refined mesh; "
+            "take fewer or longer edges, or more functions (--size), with which the mesh is refined further"
+        )
+    plain = replace(flat, crease=None, seam=None, sites=None, density=None)
+    asked = Asked(count, (1, 0, 0), grading=0.0, more=(0, 0))
+    domain = crease_triangulation(creased(plain, flat.sharp, asked))
+    made = SurfaceMesh.at(surface, vertex_points(domain), domain.vertex)
+    here = np.flatnonzero(domain.creased & domain.reference)
+    ends = domain.vertex.ravel()[np.stack([here, here - here % 3 + (here + 1) % 3], axis=1)]
+    return replace(made, creases=ends)
 
 
 def scattered(surface: OrbifoldSurface, count: int, seed: int = 0) -> Points:

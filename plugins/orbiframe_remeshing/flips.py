@@ -19,8 +19,8 @@ _ENOUGH = 25.0
 _REGULAR = 6
 
 
-def flipped_for_angles(places: Floats, triangles: Ints) -> Ints:
-    """Triangles (F, 3) of which no flip makes the least angle of the two larger.
+def flipped_for_angles(places: Floats, triangles: Ints, kept: Ints | None = None) -> Ints:
+    """Triangles (F, 3) of which no flip makes the least angle of the two larger; kept: (n, 2), edges that stay.
 
     No flip makes an edge that is there already, or turns a triangle against the two that it replaces; each makes the
     sorted list of all least angles larger, so they end. In the plane what is left is a Delaunay triangulation
@@ -28,7 +28,7 @@ def flipped_for_angles(places: Floats, triangles: Ints) -> Ints:
     """
     while True:
         edges = edges_of(triangles, len(places))
-        before, after, allowed = _angles(places, edges)
+        before, after, allowed = _angles(places, edges, kept)
         gain = np.where(allowed, after - before, 0.0)
         chosen = _apart(gain, _GAIN, (edges.first, edges.second), len(triangles))
         if not len(chosen):
@@ -36,14 +36,14 @@ def flipped_for_angles(places: Floats, triangles: Ints) -> Ints:
         triangles = _flipped(triangles, edges, chosen)
 
 
-def flipped_for_valences(places: Floats, triangles: Ints) -> Ints:
-    """Triangles (F, 3) of which no flip brings the numbers of edges at four vertices nearer to six.
+def flipped_for_valences(places: Floats, triangles: Ints, kept: Ints | None = None) -> Ints:
+    """Triangles (F, 3) of which no flip brings the numbers of edges at four vertices nearer to six; kept: as above.
 
     The sum of squares is what falls. No flip makes a least angle below 25 degrees smaller.
     """
     while True:
         edges = edges_of(triangles, len(places))
-        before, after, allowed = _angles(places, edges)
+        before, after, allowed = _angles(places, edges, kept)
         excess = np.bincount(triangles.ravel(), minlength=len(places)) - _REGULAR
         fall = excess[edges.a] + excess[edges.b] - excess[edges.c] - excess[edges.d] - 2
         gain = np.where(allowed & (after > np.minimum(before, _ENOUGH)), fall, 0).astype(np.float64)
@@ -53,14 +53,14 @@ def flipped_for_valences(places: Floats, triangles: Ints) -> Ints:
         triangles = _flipped(triangles, edges, chosen)
 
 
-def _angles(places: Floats, edges: Edges) -> tuple[Floats, Floats, Bools]:
+def _angles(places: Floats, edges: Edges, kept: Ints | None) -> tuple[Floats, Floats, Bools]:
     """The least angle of both triangles at every edge, that after a flip, and whether the flip is allowed."""
     old = [np.stack(corners, axis=1) for corners in ((edges.a, edges.b, edges.c), (edges.a, edges.d, edges.b))]
     new = [np.stack(corners, axis=1) for corners in ((edges.a, edges.d, edges.c), (edges.d, edges.b, edges.c))]
     before, after = (np.minimum(*(least_angles(places, t) for t in pair)) for pair in (old, new))
     normal = cross(places, old[0]) + cross(places, old[1])
     upright = [np.einsum("ei,ei->e", cross(places, t), normal) > 0 for t in new]
-    return before, after, upright[0] & upright[1] & ~edges.joined()
+    return before, after, upright[0] & upright[1] & ~edges.joined() & ~edges.among(kept)
 
 
 def _apart(gain: Floats, least: float, claims: tuple[Ints, ...], count: int) -> Ints:

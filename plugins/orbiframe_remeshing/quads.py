@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import Points, Polyhedron
-from orbiframe_remeshing.edges import edges_of
+from orbiframe_remeshing.crease_points import crease_points
+from orbiframe_remeshing.edges import Edges, edges_of
 from orbiframe_remeshing.lifted_edges import lifted
 from orbiframe_remeshing.relaxation import mended, stepped
 from orbiframe_remeshing.surface_mesh import SurfaceMesh, element, jets_at
@@ -29,13 +30,14 @@ def quadrilaterals(mesh: SurfaceMesh) -> Polyhedron:
     triangles, count = mesh.triangles, len(mesh.places)
     edges = edges_of(triangles, count)
     middle, centre = _numbers(triangles, edges.key, count)
-    added = _between(mesh, edges.a, edges.b), _between(mesh, *triangles.T)
+    added = _middles(mesh, edges), _between(mesh, *triangles.T)
     new = Points(*(np.concatenate(pair) for pair in zip(*added, strict=True)))
     whole = SurfaceMesh(
         mesh.surface,
         Points(*(np.concatenate(pair) for pair in zip(mesh.points, new, strict=True))),
         np.concatenate([mesh.jets, jets_at(mesh.surface, new)], axis=1),
         _halves(triangles, middle, centre),
+        None if mesh.creases is None else _halved(mesh.creases, edges, count),
     )
     for _ in range(_STEPS):
         whole = stepped(whole)
@@ -44,6 +46,23 @@ def quadrilaterals(mesh: SurfaceMesh) -> Polyhedron:
     faces = np.column_stack([whole.triangles[: triangles.size], np.roll(middle, 1, axis=1).ravel()])
     made = Polyhedron.from_faces(placed.vertices, faces).with_vertices(placed.vertices, placed.normals)
     return replace(made, unit=placed.unit)
+
+
+def _middles(mesh: SurfaceMesh, edges: Edges) -> Points:
+    """The middles of edges, (E,), those of creases on the creases."""
+    found, sharp = _between(mesh, edges.a, edges.b), np.flatnonzero(edges.among(mesh.creases))
+    if not len(sharp):
+        return found
+    chords = (mesh.places[edges.a[sharp]] + mesh.places[edges.b[sharp]]) / 2
+    on_crease, patch, x = crease_points(mesh.surface, chords), found.patch.copy(), found.x.copy()
+    patch[sharp], x[sharp] = on_crease.patch, on_crease.x
+    return Points(patch, x)
+
+
+def _halved(ends: Ints, edges: Edges, count: int) -> Ints:
+    """The halves of edges with given ends, (2 n, 2)."""
+    kept = np.flatnonzero(edges.among(ends))
+    return np.concatenate([np.stack([end[kept], count + kept], axis=1) for end in (edges.a, edges.b)])
 
 
 def _between(mesh: SurfaceMesh, first: Ints, *others: Ints) -> Points:

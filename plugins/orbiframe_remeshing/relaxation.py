@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,20 +31,22 @@ def relaxed(mesh: SurfaceMesh) -> SurfaceMesh:
     """
     with_valences, without = _STEPS
     for number in range(with_valences + without):
-        triangles = flipped_for_angles(mesh.places, mesh.triangles)
+        triangles = flipped_for_angles(mesh.places, mesh.triangles, mesh.creases)
         if number < with_valences:
-            triangles = flipped_for_valences(mesh.places, triangles)
+            triangles = flipped_for_valences(mesh.places, triangles, mesh.creases)
         mesh = stepped(mesh.joined_by(triangles))
-    mesh = mended(mesh.joined_by(flipped_for_angles(mesh.places, mesh.triangles)), _POOR)
-    return mesh.joined_by(flipped_for_angles(mesh.places, mesh.triangles))
+    mesh = mended(mesh.joined_by(flipped_for_angles(mesh.places, mesh.triangles, mesh.creases)), _POOR)
+    return mesh.joined_by(flipped_for_angles(mesh.places, mesh.triangles, mesh.creases))
 
 
 def stepped(mesh: SurfaceMesh) -> SurfaceMesh:
-    """Every vertex a step nearer to the centroid of its triangles, at most 0.35 of its shortest edge."""
+    """Every vertex off creases a step nearer to the centroid of its triangles, at most 0.35 of its shortest edge."""
     flat = np.concatenate([mesh.jets, np.zeros_like(mesh.jets)])
     longest = _FAR * shortest_edges(mesh.places, mesh.triangles)
     step = foot_step(flat, centroids(mesh.places, mesh.triangles), longest, bent=False)
-    return SurfaceMesh.at(mesh.surface, moved(mesh.surface.orbifold, mesh.points, step), mesh.triangles)
+    step[mesh.fixed] = 0.0
+    points = moved(mesh.surface.orbifold, mesh.points, step)
+    return replace(SurfaceMesh.at(mesh.surface, points, mesh.triangles), creases=mesh.creases)
 
 
 def centroids(places: Floats, triangles: Ints) -> Floats:
@@ -72,6 +76,7 @@ def _mended_once(mesh: SurfaceMesh, poor: float) -> SurfaceMesh:
     """Some vertices at better places; the same mesh if there are none."""
     least = least_angles(mesh.places, mesh.triangles)
     chosen = np.unique(mesh.triangles[least < poor])
+    chosen = chosen[~mesh.fixed[chosen]]
     if not len(chosen):
         return mesh
     slot, star = _stars(mesh.triangles, chosen)

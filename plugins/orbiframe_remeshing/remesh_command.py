@@ -35,6 +35,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--order", metavar="Q", type=int, help="write curved triangles of order 1 to 6, for finite elements")
     add("--format", metavar="NAME", help="with --order: the format, such as gmsh-2.2, instead of that of the suffix")
     add("--size", metavar="N", type=int, help="number of functions of the surface (basis.size)")
+    add("--creases", metavar="ANGLE", help="edges that bend by ANGLE degrees or more stay, or 'marked' (data.creases)")
     add("--config", metavar="FILE.toml", type=Path, help="components and options of the fit")
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.name=ps6")
     add("--seed", metavar="S", type=int, default=0, help="another mesh of the same kind; default 0")
@@ -80,13 +81,16 @@ def _surfaces(args: argparse.Namespace, registry: Registry) -> list[OrbifoldSurf
     from orbiframe.fitting import fit_parts
 
     if args.mesh.suffix.lower() == _SURFACE:
-        if args.config or args.set or args.size is not None:
-            raise UsageError(f"{args.mesh} is a finished surface; --config, --set and --size belong to meshes")
+        if args.config or args.set or args.size is not None or args.creases is not None:
+            raise UsageError(
+                f"{args.mesh} is a finished surface; --config, --set, --size and --creases belong to meshes"
+            )
         surface = load_surface(args.mesh, registry)
         _require_closed(args, open_=surface.triangulation.inside is not None)
         return [surface]
     size = [] if args.size is None else [f"basis.size={args.size}"]
-    config = Config.load(args.config, [*args.set, *size], registry)
+    sharp = [] if args.creases is None else [f"data.creases={args.creases}"]
+    config = Config.load(args.config, [*args.set, *size, *sharp], registry)
     mesh = read(args.mesh, registry, format=None if config.mesh.open else config.mesh.name)
     _require_closed(args, open_=bool((mesh.twin < 0).any()))
     found = fit_parts(mesh, config, registry, args.progress)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from orbiframe import FitError, Orbifold, OrbifoldSurface, Polyhedron, UsageError
 from orbiframe.meshes import require_closed_surface
-from orbiframe_remeshing.even_sites import even_mesh, surface_area
+from orbiframe_remeshing.even_sites import creased_mesh, even_mesh, surface_area
 from orbiframe_remeshing.quads import quadrilaterals
 from orbiframe_remeshing.relaxation import relaxed
 from orbiframe_remeshing.surface_mesh import SurfaceMesh
@@ -65,8 +65,13 @@ def remeshed(surface: OrbifoldSurface, vertices: float, *, quads: bool = False, 
 
 
 def even_triangles(surface: OrbifoldSurface, vertices: float, seed: int = 0) -> SurfaceMesh:
-    """Even triangles on a surface, with so many vertices. Raises FitError as `remeshed` does."""
-    mesh = relaxed(even_mesh(surface, max(round(vertices), LEAST), seed))
+    """Even triangles on a surface, with so many vertices. Raises FitError as `remeshed` does.
+
+    On one with creases these are edges, and there are only about so many vertices.
+    """
+    count = max(round(vertices), LEAST)
+    creased = surface.triangulation.crease is not None
+    mesh = relaxed(creased_mesh(surface, count) if creased else even_mesh(surface, count, seed))
     _require_topology(mesh.polyhedron(), surface.orbifold)
     return mesh
 

@@ -19,13 +19,15 @@ class SurfaceMesh:
     """Triangles with vertices on a surface, before it is placed in space.
 
     points: where the vertices lie in X/H; jets: (3, V, 3), their places in space and the two derivatives of the
-    surface; triangles: (F, 3), alike in orientation where the surface is orientable.
+    surface; triangles: (F, 3), alike in orientation where the surface is orientable; creases: (n, 2), the ends of the
+    edges that are creases, and stay; None for none.
     """
 
     surface: OrbifoldSurface
     points: Points
     jets: Floats
     triangles: Ints
+    creases: Ints | None = None
 
     @classmethod
     def at(cls, surface: OrbifoldSurface, points: Points, triangles: Ints) -> SurfaceMesh:
@@ -36,6 +38,13 @@ class SurfaceMesh:
     def places(self) -> Floats:
         """The vertices in space, (V, 3), before the surface is scaled and moved to its place."""
         return np.asarray(self.jets[0])
+
+    @property
+    def fixed(self) -> NDArray[np.bool_]:
+        """The vertices on creases, which do not move, (V,)."""
+        found = np.zeros(len(self.places), dtype=np.bool_)
+        found[[] if self.creases is None else self.creases.ravel()] = True
+        return found
 
     def joined_by(self, triangles: Ints) -> SurfaceMesh:
         """The same vertices with other triangles."""

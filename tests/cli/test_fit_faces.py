@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
+import numpy as np
 import pytest
 from fitted import DATASETS
+
+from orbiframe import read, write
 
 CUBE = DATASETS / "cube.off"
 
@@ -67,6 +71,26 @@ def volume_of(path):
     from opened_shapes import read_back, volume
 
     return abs(volume(read_back(path)))
+
+
+@pytest.mark.parametrize("name", ["plate.step", "plate.xml"])
+def test_blocks_of_quads_become_faces(orbiframe, tmp_path, name):
+    """The 50 unit squares of the plate, where 32 faces are the default; with 100 asked for there are no blocks."""
+    for asked, faces in (((), 50), (("--faces", 100), 100)):
+        options = ("--size", 60, "--fast", "--export-tolerance", 1e-2, *asked, "--json")
+        ran = orbiframe("fit", DATASETS / "plate_genus2.off", "-o", tmp_path / name, *options)
+        assert ran.status == 0
+        assert json.loads(ran.out)["export"]["faces"] == faces
+
+
+def test_colours_that_divide_faces_are_told(orbiframe, tmp_path):
+    mesh = read(CUBE)
+    paint = np.eye(3)[np.arange(mesh.face_count) % 3]
+    write(tmp_path / "painted.off", replace(mesh, face_colors=paint))
+    ran = orbiframe("fit", tmp_path / "painted.off", "-o", tmp_path / "a.step", "--size", 40, "--fast")
+    assert ran.status == 0
+    assert "colours of the mesh divide" in ran.err
+    assert (tmp_path / "a.step").read_text().count("FILL_AREA_STYLE_COLOUR") >= 16
 
 
 def test_what_is_not_reached_is_told_with_its_place(orbiframe, tmp_path, monkeypatch):

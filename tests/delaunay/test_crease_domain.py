@@ -12,6 +12,7 @@ from hypothesis import given, settings, strategies as st
 
 from orbiframe.delaunay import crease_domain
 from orbiframe.delaunay.crease_domain import crease_triangulation, creased, off_geodesics
+from orbiframe.delaunay.crease_sites import Asked
 from orbiframe.delaunay.forced_edges import with_edge
 from orbiframe.delaunay.site_triangulation import delaunay_of_vertices
 from orbiframe.delaunay.sites import vertex_points
@@ -84,13 +85,30 @@ def test_as_many_sites_as_functions_ask_for() -> None:
     assert 1.5 * len(few.sites) < len(many.sites) < 4.5 * len(few.sites)
 
 
+def test_sites_follow_the_curvature() -> None:
+    """On the cylinder: twice as many on the wall in each direction, if it is twice as curved; no more than the most."""
+    triangulation, refinement = flat_map("cylinder")
+    crease = sharp_edges(refinement.polyhedron, 30)
+    wall = np.abs(refinement.polyhedron.vertices[:, 2] - 0.5) < 0.49
+    counts = []
+    for radius in (0.5, 0.25, 0.125):
+        asked = Asked(100, (3, 0, 0), np.where(wall, 1 / radius, 0.0), most=100_000)
+        found = creased(triangulation, crease, asked)
+        counts.append(int(wall[found.sites].sum()))
+        assert crease_triangulation(found).vertex_count == len(found.sites)
+    assert counts[0] < counts[1] < counts[2]
+    assert 2.5 < counts[2] / counts[1] < 5.5
+    few = creased(triangulation, crease, Asked(100, (3, 0, 0), np.where(wall, 8.0, 0.0), most=300))
+    assert 3 * len(few.sites) < 700
+
+
 def test_a_crease_that_finds_no_place_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(crease_domain, "with_edge", lambda *_: None)
     monkeypatch.setattr(crease_domain, "_ROUNDS", 1)
     monkeypatch.setattr(crease_domain, "_LAST_ROUNDS", 0)
     triangulation, refinement = flat_map("klein_bottle.off")
     with pytest.raises(MapError, match=r"a crease near \(.*\) of the mesh.*more functions.*larger angle"):
-        creased(triangulation, sharp_edges(refinement.polyhedron, 30), 300, (3, 0, 0))
+        creased(triangulation, sharp_edges(refinement.polyhedron, 30), Asked(300, (3, 0, 0)))
 
 
 def test_sites_without_their_edges_are_refused() -> None:

@@ -194,6 +194,11 @@ def _one_side(arrays: dict[str, np.ndarray]) -> None:
     _put("crease", first, False)(arrays)
 
 
+def _one_side_of_a_seam(arrays: dict[str, np.ndarray]) -> None:
+    arrays["seam"] = arrays["crease"].copy()
+    arrays["seam"][np.flatnonzero(arrays["crease"])[0]] = False
+
+
 def _without_a_corner(arrays: dict[str, np.ndarray]) -> None:
     tail = arrays["fine_tail"][arrays["crease"]]
     corner = np.flatnonzero(np.bincount(tail) == 3)[0]
@@ -222,6 +227,8 @@ BROKEN = {
     "a site out of range": (_put("sites", 0, 10**6), "sites", "vertices are 0 to"),
     "a site twice": (lambda a: a.update(sites=np.append(a["sites"], a["sites"][0])), "sites", "different"),
     "a corner that is no site": (_without_a_corner, "sites", "ends and corners"),
+    "seams that are no creases": (lambda a: a.update(seam=~a["crease"]), "seam", "seams are among the creases"),
+    "one halfedge of a seam": (_one_side_of_a_seam, "seam", "both halfedges"),
     "a crease beside its geodesic": (_beside_its_geodesic, "points", "along geodesics from site to site"),
     "sites without their edges": (_few_sites, "(points|sites)", "(along geodesics|Delaunay)"),
 }
@@ -260,6 +267,24 @@ def test_elements_of_a_creased_surface_do_not_straddle_creases() -> None:
     nodes = mesh.nodes[mesh.elements]
     sizes = np.linalg.svd(nodes - nodes.mean(axis=1, keepdims=True), compute_uv=False)
     assert (sizes[:, 2] < 1e-4 * sizes[:, 0]).all()
+
+
+@pytest.mark.parametrize("name", ["cube.off", PLATE])
+def test_cad_files_have_every_crease_as_edges_at_its_angle(tmp_path: Path, name: str) -> None:
+    """Read back by Open CASCADE: a valid solid; its sharp edges are as long as those of the mesh, at right angles."""
+    pytest.importorskip("OCP", reason='Open CASCADE is the extra "orbiframe[cad]"')
+    import opened_shapes as opened
+
+    options = (30, 300, "basis.name=ps2") if name == "cube.off" else (30, 600)
+    shape = opened.reopened(fitted_with_creases(name, *options).surface, tmp_path / "creased.step")
+    assert opened.is_valid(shape)
+    assert opened.is_solid(shape)
+    edges, mesh = opened.angles_at_edges(shape), mesh_of(name)
+    sharp, wanted = edges[:, 1] > 1, bending(mesh).angle > 0.5
+    assert edges[sharp, 0].sum() == pytest.approx((mesh.edge_lengths * wanted * mesh.representative).sum(), rel=1e-4)
+    assert np.abs(edges[sharp, 1] - 90).max() < 0.5
+    volume = np.linalg.det(mesh.vertices[mesh.triangles]).sum() / 6
+    assert opened.volume(shape) == pytest.approx(volume, rel=1e-4)
 
 
 def test_few_faces_of_a_creased_surface_are_refused(tmp_path: Path) -> None:

@@ -31,7 +31,8 @@ LARGEST = float(np.finfo(np.float32).max)
 def write(path: Path, polyhedron: Polyhedron) -> None:
     """Write triangles, unit normals and colours of vertices, numbers as float32; a .gltf holds its buffer itself.
 
-    Vertices whose corners have different points of a texture are written once for each of these.
+    Vertices whose corners have different points of a texture, or different normals, as beside creases, are written once
+    for each of these.
 
     Coordinates in millimetres are converted to metres, with a notice; those of no unit are written as they are.
 
@@ -41,7 +42,7 @@ def write(path: Path, polyhedron: Polyhedron) -> None:
     polyhedron = in_unit(path, polyhedron, "metre")
     _require_writable(path, polyhedron)
     tell_loss(path, "colours of faces", polyhedron.face_colors is not None)
-    polyhedron, texture = _split_by_texture(polyhedron)
+    polyhedron, texture = _split(polyhedron)
     buffer = _Buffer()
     attributes = {"POSITION": buffer.add(polyhedron.vertices.astype("<f4"), bounds=True)}
     normals = _unit_normals(path, polyhedron)
@@ -101,19 +102,26 @@ class _Buffer:
         return len(self.accessors) - 1
 
 
-def _split_by_texture(polyhedron: Polyhedron) -> tuple[Polyhedron, NDArray[np.float64] | None]:
-    """The polyhedron with a vertex for each point of the texture, and these, (V, 2) from the upper left corner down."""
-    if polyhedron.corner_uv is None:
+def _split(polyhedron: Polyhedron) -> tuple[Polyhedron, NDArray[np.float64] | None]:
+    """The polyhedron with a vertex for each point of the texture and each normal of corners.
+
+    Also the points of the texture, (V, 2), from the upper left corner down.
+    """
+    uv, normals = polyhedron.corner_uv, polyhedron.corner_normals
+    if uv is None and normals is None:
         return polyhedron, None
-    table = np.column_stack([polyhedron.tail, polyhedron.corner_uv])
-    first, number = np.unique(table, axis=0, return_index=True, return_inverse=True)[1:]
+    tables = [table for table in (polyhedron.tail[:, None], uv, normals) if table is not None]
+    first, number = np.unique(np.concatenate(tables, axis=1), axis=0, return_index=True, return_inverse=True)[1:]
     vertex = polyhedron.tail[first]
-    tables = (None if a is None else a[vertex] for a in (polyhedron.normals, polyhedron.colors))
-    normals, colors = tables
+    own = polyhedron.normals[vertex] if normals is None and polyhedron.normals is not None else None
     split = Polyhedron.from_corners(
-        polyhedron.vertices[vertex], polyhedron.offsets, number.ravel(), normals=normals, colors=colors
+        polyhedron.vertices[vertex],
+        polyhedron.offsets,
+        number.ravel(),
+        normals=own if normals is None else normals[first],
+        colors=None if polyhedron.colors is None else polyhedron.colors[vertex],
     )
-    return split, polyhedron.corner_uv[first] * [1.0, -1.0] + [0.0, 1.0]
+    return split, None if uv is None else uv[first] * [1.0, -1.0] + [0.0, 1.0]
 
 
 def _unit_normals(path: Path, polyhedron: Polyhedron) -> NDArray[np.float64] | None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from orbiframe_drawing.picture import Raster
 from orbiframe_drawing.solid import Solid3D
-from orbiframe_drawing.solid_picture import cut_picture, surface_picture
+from orbiframe_drawing.solid_picture import cut_picture, edge_chains, surface_picture
 from orbiframe_drawing.tessellation_picture import tessellation_picture
 
 from orbiframe import Config, Polyhedron, Registry, Word, fit, read
@@ -166,6 +166,23 @@ def test_the_surface_stands_beside_its_tessellation(plate):
     assert raster.box[2] < min(curve.points[:, 0].min() for curve in circles)
     # The lines on it are images of edges of the polyhedron: at most as many chains as there are edges.
     assert picture.shapes[0].paths
+
+
+@pytest.mark.parametrize("boundary", ["cap", "collar"])
+def test_the_lines_on_a_surface_with_a_boundary_are_its_edges(boundary):
+    torus = read(DATASETS / "torus.off")
+    quads = torus.tail.reshape(-1, 4)
+    middle = torus.vertices[quads].mean(axis=1)[:, 0]
+    mesh = Polyhedron.from_faces(torus.vertices, quads[middle < 0.85 * middle.max()])
+    made = fit(mesh, boundary=boundary, size=150, fast=True, progress=False)
+    chains = edge_chains(made.input, made.surface, 3)
+    points = made.surface.tessellate(3).vertices[chains]
+    ends = np.stack([made.input.tail, made.input.head], axis=1)[made.input.representative]
+    assert len(chains) == len(ends)
+    assert np.abs(points[:, [0, -1]] - made.input.vertices[ends]).max() < 0.02
+    # Between its ends an edge goes straight on.
+    steps = np.linalg.norm(np.diff(points, axis=1), axis=2)
+    assert (steps.sum(axis=1) < 1.1 * np.linalg.norm(points[:, -1] - points[:, 0], axis=1)).all()
 
 
 def test_loops_and_sides_of_one_letter_have_one_colour(plate):

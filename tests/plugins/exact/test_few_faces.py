@@ -6,15 +6,16 @@ import itertools
 
 import numpy as np
 import pytest
-from fitted import fitted as fit_of
+from fitted import DATASETS, fitted as fit_of
 from late import Late
-from orbiframe_exact import few_faces
+from orbiframe_exact import few_faces, quad_domain as quad_domain_module
 from orbiframe_exact.complete_spline import evaluate, evaluate_grid
 from orbiframe_exact.faces_of_surface import described, fitted
 from orbiframe_exact.few_faces import FewFaces
 from orbiframe_exact.quad_domain import _matching, default_count, quad_domain
 
-from orbiframe import Points
+from orbiframe import Points, read
+from orbiframe.meshes import blocks_near
 
 opened, shared_edges, open_cascade = (
     Late("opened_shapes", needs="OCP.gp"),
@@ -23,6 +24,10 @@ opened, shared_edges, open_cascade = (
 )
 
 SHAPES = ["plate_genus2_coarse.off", "torus.off", "klein_bottle.off", "cube.off", "projective_plane.off"]
+
+
+def corners(count: int) -> tuple[np.ndarray, np.ndarray]:
+    return np.tile([0.0, 1, 1, 0], count), np.tile([0.0, 0, 1, 1], count)
 
 
 def diagonal(surface) -> float:
@@ -68,6 +73,30 @@ def test_quadrilaterals_cover_x_h_and_agree_on_their_sides(name):
             places.append(domain.points.jets(np.full(len(u), side // 4), *few.along(side, u), 0)[0])
     one, other = np.array(places[::2]), np.array(places[1::2])
     assert np.abs(one - other).max() < 1e-8
+
+
+def test_faces_are_blocks_of_the_input_where_it_has_some():
+    """The plate of 50 unit squares and the torus of 24 x 12 quads; corners of faces are corners of blocks in space."""
+    for name, count in (("plate_genus2_coarse.off", 50), ("torus.off", 18)):
+        surface, mesh = fit_of(name).surface, read(DATASETS / name)
+        blocks = blocks_near(mesh.tail.reshape(-1, 4), default_count(surface))
+        assert blocks is not None
+        domain = quad_domain(surface, default_count(surface), blocks)
+        assert domain.count == count
+        corner = domain.points.jets(np.repeat(np.arange(count), 4), *corners(count), 0)[0].reshape(count, 4, 3)
+        own = surface.basis.values(surface.vertex_points, surface.coefficients)[: len(mesh.vertices)]
+        there = own[blocks]
+        gap = np.linalg.norm(corner[:, None, :, None] - there[None, :, None, :], axis=-1)
+        met = (gap < 1e-6).any(axis=3).all(axis=2)
+        assert met.sum() >= 0.9 * count
+    assert blocks_near(mesh.tail.reshape(-1, 4), 36) is None
+
+
+def test_blocks_far_from_square_count_for_nothing(monkeypatch):
+    surface, mesh = fit_of("torus.off").surface, read(DATASETS / "torus.off")
+    blocks = blocks_near(mesh.tail.reshape(-1, 4), 16)
+    monkeypatch.setattr(quad_domain_module, "_SQUARE_ENOUGH", 1.0)
+    assert quad_domain(surface, 16, blocks).count == quad_domain(surface, 16).count == 16
 
 
 def test_the_matching_is_the_best_of_all():
@@ -147,6 +176,26 @@ def test_open_cascade_reads_a_closed_shape_of_the_same_volume(name, suffix, tmp_
         assert met.faces == [2] * (2 * said["faces"])
         assert met.gap < 1e-6
         assert met.angle < 0.11
+
+
+@pytest.mark.long
+def test_a_face_that_meets_a_vertex_twice_is_read_whole(tmp_path):
+    """Three crosscaps have faces that no reader finds in the square by their edges in space alone."""
+    surface, path = fit_of("three_crosscaps.off").surface, tmp_path / "surface.step"
+    assert quad_domain(surface, default_count(surface)).meets_itself.any()
+    said = open_cascade.write_step(path, surface, exact=False)
+    assert said["valid"]
+    met = shared_edges.meeting(opened.read_back(path), 7)
+    assert met.faces == [2] * (2 * said["faces"])
+    assert met.gap < 1e-6
+
+
+@pytest.mark.long
+def test_valid_is_what_the_file_is(tmp_path, monkeypatch):
+    """Without the lines in the squares of its faces the same shape is not what is read again, and that is told."""
+    monkeypatch.setattr(quad_domain_module.QuadDomain, "meets_itself", np.zeros(1, dtype=bool))
+    surface = fit_of("three_crosscaps.off").surface
+    assert not open_cascade.write_step(tmp_path / "surface.step", surface, exact=False)["valid"]
 
 
 def test_a_tolerance_and_a_number_are_kept():

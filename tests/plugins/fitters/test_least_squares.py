@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import reference_surfaces as surfaces
 from orbiframe_bases.gaussian import Gaussian
-from orbiframe_fitters import gram, least_squares, normal_equations
+from orbiframe_fitters import chunks, gram, normal_equations
 from orbiframe_fitters.least_squares import LeastSquares
 from scipy.sparse import csr_array, diags_array, hstack
 
@@ -52,7 +52,7 @@ def test_sparse_and_dense_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     dense = LeastSquares().fit(basis, data)
     monkeypatch.setattr(gram, "_DENSE", 10)
     monkeypatch.setattr(normal_equations, "_FILLED", 2)
-    monkeypatch.setattr(least_squares, "_CHUNK", 97)
+    monkeypatch.setattr(chunks, "_CHUNK", 97)
     np.testing.assert_allclose(LeastSquares().fit(basis, data), dense, atol=1e-9)
 
 

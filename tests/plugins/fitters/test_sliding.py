@@ -194,7 +194,7 @@ def test_many_samples_count_though_few_slide(monkeypatch, mapped) -> None:
     monkeypatch.setattr(few_samples, "_CHEAP", 0)
     noisy = noisy_torus(mapped)
     basis = Gaussian(mapped.orbifold, mapped, size=60)
-    few = few_samples.few_samples(basis, noisy)
+    few = few_samples.few_samples(basis, noisy).data
     assert len(few.weights) <= 24 * 60 < len(noisy.weights) / 3
     here = off_torus(basis.values(noisy.points, Sliding().fit(basis, noisy)))
     monkeypatch.setattr(few_samples, "_CHEAP", 1 << 30)
@@ -213,7 +213,7 @@ def test_few_samples_stand_for_all(monkeypatch, mapped) -> None:
     noisy = noisy_torus(mapped)
     noisy = replace(noisy, weights=noisy.weights * rng.integers(0, 2, len(noisy.weights)), area=noisy.weights)
     basis = Gaussian(mapped.orbifold, mapped, size=40)
-    few = few_samples.few_samples(basis, noisy)
+    few = few_samples.few_samples(basis, noisy).data
     for samples, total in ((noisy, {}), (few, {})):
         largest = basis.design_matrix(samples.points).toarray().argmax(axis=1)
         total["weights"] = np.bincount(largest, weights=samples.weights, minlength=40)
@@ -230,7 +230,7 @@ def test_along_creases_all_samples_count(monkeypatch, mapped) -> None:
     monkeypatch.setattr(few_samples, "_CHEAP", 0)
     noisy = noisy_torus(mapped)
     creased = replace(noisy, still=np.zeros(len(noisy.weights), dtype=np.bool_))
-    assert few_samples.few_samples(Gaussian(mapped.orbifold, mapped, size=40), creased) is creased
+    assert few_samples.few_samples(Gaussian(mapped.orbifold, mapped, size=40), creased).data is creased
 
 
 def test_held_samples_all_remain(monkeypatch, mapped) -> None:
@@ -238,7 +238,7 @@ def test_held_samples_all_remain(monkeypatch, mapped) -> None:
     noisy = noisy_torus(mapped)
     held = np.arange(len(noisy.weights)) % 100 < 9
     basis = Gaussian(mapped.orbifold, mapped, size=40)
-    few = few_samples.few_samples(basis, replace(noisy, held=held))
+    few = few_samples.few_samples(basis, replace(noisy, held=held)).data
     assert few.held.sum() == held.sum()
     assert len(few.weights) <= 24 * 40 + held.sum()
     np.testing.assert_allclose(np.sort(few.weights[few.held]), np.sort(noisy.weights[held]), rtol=1e-12)

@@ -60,7 +60,8 @@ def test_a_sphere_of_regular_numbering_is_ordered_quickly_and_well(order_of):
 def test_the_order_of_a_mesh_is_found_once():
     mesh = grid(5, 6)
     assert Elimination.of(mesh) is Elimination.of(mesh)
-    assert Elimination.of(mesh) is not Elimination.of(grid(5, 6))
+    assert Elimination.of(mesh) is Elimination.of(grid(5, 6)), "the same faces"
+    assert Elimination.of(mesh) is not Elimination.of(grid(6, 5))
 
 
 def factor(mesh, elimination):

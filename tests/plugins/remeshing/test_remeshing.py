@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from creased import fitted_with_creases, mesh_of
 from fitted import fitted
 from orbiframe_remeshing import even_sites, relaxation, remeshing, surface_mesh
 from orbiframe_remeshing.even_sites import scattered, surface_area
@@ -17,6 +18,8 @@ from scipy.spatial import cKDTree
 from orbiframe import FitError, Points, UsageError
 from orbiframe.functions import foot_points
 from orbiframe.meshes import require_closed_surface
+from orbiframe.meshes.bending import bending
+from orbiframe.meshes.sizes import vector_areas
 
 SHAPES = ["plate_genus2_coarse.off", "torus.off", "klein_bottle.off", "projective_plane.off", "cube.off"]
 
@@ -154,3 +157,52 @@ def test_a_mesh_of_another_topology_is_refused(monkeypatch):
     monkeypatch.setattr(remeshing, "relaxed", lambda _: type("Mesh", (), {"polyhedron": lambda self: other})())
     with pytest.raises(FitError, match="not the surface"):
         remeshed(surface, 300)
+
+
+# ---- creases --------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def creased():
+    return fitted_with_creases("plate_genus2_coarse.off", size=600).surface
+
+
+def test_creases_are_edges_of_the_triangles(creased):
+    """Edges that bend by more than 45 degrees are as long together as those of the plate, and at right angles."""
+    mesh = remeshed(creased, 500)
+    bends, plate = bending(mesh).angle, mesh_of("plate_genus2_coarse.off")
+    sharp = [(m.edge_lengths * (bending(m).angle > np.pi / 4)).sum() for m in (mesh, plate)]
+    assert sharp[0] == pytest.approx(sharp[1], rel=1e-4)
+    assert ((bends < 0.02) | (np.abs(bends - np.pi / 2) < 0.02)).all()
+    found = require_closed_surface(mesh)
+    assert found.euler_characteristic == -2
+    assert 350 < len(mesh.vertices) < 650
+
+
+def test_creases_that_may_flip_are_lost(creased, monkeypatch):
+    """The mutant: without marks the flips of relaxation cut corners."""
+    plain = remeshing.creased_mesh
+    monkeypatch.setattr(remeshing, "creased_mesh", lambda *args: replace(plain(*args), creases=None))
+    mesh = remeshed(creased, 500)
+    bends = bending(mesh).angle
+    assert ((bends > 0.02) & (np.abs(bends - np.pi / 2) > 0.02)).any()
+
+
+def test_more_vertices_than_the_refined_mesh_has_for_creases(creased):
+    with pytest.raises(FitError, match=r"more than \d+, a quarter of those of its refined mesh; .*more functions"):
+        remeshed(creased, 100_000)
+
+
+def test_creases_are_sides_of_the_quadrilaterals(creased):
+    """Every quadrilateral lies in one plane of the plate, and their sharp sides are as long together as its edges."""
+    mesh, plate = remeshed(creased, 1500, quads=True), mesh_of("plate_genus2_coarse.off")
+    assert (mesh.face_sizes == 4).all()
+    corners = mesh.vertices[mesh.tail.reshape(-1, 4)]
+    thin = np.linalg.svd(corners - corners.mean(axis=1, keepdims=True), compute_uv=False)[:, 2]
+    assert thin.max() < 1e-3 * plate.diagonal
+    normal = vector_areas(mesh)
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    sharp = np.einsum("hi,hi->h", normal[mesh.face], normal[mesh.face[mesh.twin]]) < 0.5
+    edges = (plate.edge_lengths * (bending(plate).angle > np.pi / 4)).sum()
+    assert mesh.edge_lengths[sharp].sum() == pytest.approx(edges, rel=1e-4)
+    assert require_closed_surface(mesh).euler_characteristic == -2
