@@ -6,7 +6,7 @@ import numpy as np
 
 from orbiframe.compiled.decorator import compiled
 from orbiframe.splines.bernstein_kernels import fan_triangle, micro_heights, micro_triangle
-from orbiframe.triangulations.point_location import settled, square_of, walk
+from orbiframe.triangulations.walks import settled, square_of, walk
 
 
 @compiled(arrays=False, may_divide_by_zero=True)
