@@ -38,13 +38,17 @@ def even_share(mesh: Polyhedron) -> float:
 
 
 def widths(mesh: Polyhedron, angle: Floats, edges: Ints) -> Floats:
-    """How far the flat at each of some halfedges reaches from its line; a flat is joined by edges that hardly bend."""
+    """How far the flat at each of some halfedges reaches from its line; a flat is joined by edges that hardly bend.
+
+    It reaches farthest at its rim, so faces inside of it are not looked at.
+    """
     flat = angle < _FLAT
     links = coo_array(
         (np.ones(int(flat.sum())), (mesh.face[flat], mesh.face[mesh.twin[flat]])), shape=(mesh.face_count,) * 2
     )
     region = connected_components(links, directed=False)[1]
-    order = np.argsort(region, kind="stable")
+    rim = np.unique(mesh.face[~flat])
+    order = rim[np.argsort(region[rim], kind="stable")]
     first = np.searchsorted(region[order], np.arange(region.max() + 2))
     return np.array(
         [_reach(mesh, h, order[first[r] : first[r + 1]]) for h, r in zip(edges, region[mesh.face[edges]], strict=True)]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from fitted import grid
 
+from orbiframe.meshes import even_bends
 from orbiframe.meshes.bending import bending
 from orbiframe.meshes.even_bends import even_share, widths
 from orbiframe.meshes.face_diagonals import triangulated
@@ -51,3 +52,29 @@ def test_widths_reach_over_flats_of_many_triangles() -> None:
     upright = np.flatnonzero((angle > np.radians(40)) & (angle < np.radians(50)))
     found = widths(mesh, angle, upright)
     assert np.sort(found) == pytest.approx(np.repeat([0.25, 1.0], 8))
+
+
+def test_only_the_rim_of_a_flat_is_looked_at(monkeypatch) -> None:
+    n = 24
+    x, y = (each.ravel() for each in np.meshgrid(np.arange(n + 1.0), np.arange(n + 1.0), indexing="ij"))
+    wider = np.stack([each + np.where(each == 0, -1, 0) + np.where(each == n, 1, 0) for each in (x, y)])
+    vertices = np.concatenate([np.stack([x, y, 1 + 0 * x], axis=1), np.stack([*wider, 0 * x], axis=1)])
+    corner = np.arange(n)[:, None] * (n + 1) + np.arange(n)
+    top = np.stack([corner, corner + n + 1, corner + n + 2, corner + 1], axis=-1).reshape(-1, 4)
+    ring = np.array([*range(0, n * (n + 1), n + 1), *range(n * (n + 1), (n + 1) ** 2 - 1)])
+    ring = np.concatenate([ring, (n + 1) ** 2 - 1 - ring])
+    skirt = np.stack([np.roll(ring, -1), ring, ring + len(x), np.roll(ring, -1) + len(x)], axis=1)
+    frustum = triangulated(Polyhedron.from_faces(vertices, np.concatenate([top, top[:, ::-1] + len(x), skirt])))
+    looked_at = []
+    reach = even_bends._reach
+    monkeypatch.setattr(
+        even_bends, "_reach", lambda mesh, edge, faces: looked_at.append(len(faces)) or reach(mesh, edge, faces)
+    )
+    assert even_share(frustum) == pytest.approx(1)
+    assert len(looked_at) == 4 * 4 * n  # edges by their halfedges, on both sides
+    assert max(looked_at) <= 8 * n
+    # As far as all corners of the flat reach.
+    angle = bending(frustum).angle
+    sharp = np.flatnonzero((angle > np.radians(40)) & (angle < np.radians(50)))
+    lying = sharp[frustum.vertices[frustum.triangles[frustum.face[sharp]]][:, :, 2].min(axis=1) == 1]
+    np.testing.assert_allclose(widths(frustum, angle, lying), n)
