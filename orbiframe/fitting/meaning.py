@@ -11,7 +11,7 @@ from orbiframe.functions.border_samples import with_border
 from orbiframe.functions.samples import Samples, coordinate_samples
 from orbiframe.functions.samples_of_sides import crease_samples
 from orbiframe.functions.smooth_samples import inside_facets, semi_smooth_samples, vertex_samples
-from orbiframe.meshes.bending import bending
+from orbiframe.meshes.bending import SHARP, bending
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.meshes.even_bends import even_share
 from orbiframe.meshes.polyhedron import Polyhedron
@@ -117,8 +117,14 @@ def facets_show(mesh: Polyhedron, size: int) -> bool:
 
 
 def _beside_creases(mesh: Polyhedron, share: float, creases: NDArray[np.bool_]) -> Meaning:
-    """Facets where nothing bends but creases; otherwise what bends is curved, and what does not is flat."""
-    amount = mesh.edge_lengths * bending(mesh).angle
-    rest = float(amount[~creases].sum() / max(amount.sum(), 1e-300))
-    reason = f"{100 * (1 - rest):.0f} % of its bending lies in creases"
-    return Meaning(SEMI_SMOOTH if rest > _FLAT else FACETS, share, reason)
+    """Facets where little bends but creases and other sharp edges; otherwise what bends is curved, the rest is flat."""
+    angle = bending(mesh).angle
+    amount = mesh.edge_lengths * angle
+    total, rest = float(amount.sum()), float(amount[~creases].sum())
+    reason = f"{100 * (1 - rest / max(total, 1e-300)):.0f} % of its bending lies in creases"
+    if rest <= _FLAT * total:
+        return Meaning(FACETS, share, reason)
+    sharp = float(amount[~creases & (angle > SHARP)].sum()) / rest
+    if sharp >= _SHARP:
+        return Meaning(FACETS, share, f"{reason}, and {100 * sharp:.0f} % of the rest in other edges of more than 40°")
+    return Meaning(SEMI_SMOOTH, share, reason)

@@ -7,6 +7,7 @@ import pytest
 from fitted import grid, round_sphere
 
 from orbiframe.fitting.meaning import meaning_of
+from orbiframe.meshes.bending import bending
 from orbiframe.meshes.face_diagonals import triangulated
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.testing.polyhedra import reference_polyhedra
@@ -49,3 +50,18 @@ def test_between_the_number_of_functions_decides(size: int, name: str) -> None:
     rims, wall_bends = 2 * 2 * np.pi * np.pi / 2, 9 * 2 * np.pi
     assert found.bend_share == pytest.approx(rims / (rims + wall_bends), rel=0.02)
     assert found.name == name
+
+
+def test_beside_creases_other_sharp_edges_bend_no_facets() -> None:
+    cube = triangulated(reference_polyhedra()["cube"])
+    sharp = bending(cube).angle > 1
+    one = np.flatnonzero(sharp)[0]
+    marked = np.zeros(len(sharp), dtype=bool)
+    marked[[one, cube.twin[one]]] = True
+    found = meaning_of(cube, "auto", 1000, marked)
+    assert found.name == "facets"
+    assert "8 % of its bending lies in creases, and 100 % of the rest" in found.reason
+    assert meaning_of(cube, "auto", 1000, sharp).name == "facets"
+    # What bends little beside creases is curved.
+    round_, none = torus(24, 12), np.zeros(3 * torus(24, 12).face_count, dtype=bool)
+    assert meaning_of(round_, "auto", 1000, none).name == "semi-smooth"
