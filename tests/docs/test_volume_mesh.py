@@ -11,14 +11,12 @@ import numpy as np
 import pytest
 from documents import ROOT, module_of
 from fitted import fitted
+from installed_gmsh import require_gmsh
 from orbiframe_remeshing.remeshing import remeshed
 
 from orbiframe import OrbifoldSurface, Polyhedron
 
-try:
-    import gmsh  # noqa: F401
-except (ImportError, OSError):
-    pytest.skip("Gmsh is not there: pip install gmsh", allow_module_level=True)
+require_gmsh()
 
 # As meshio orders them: corners, then the middles of the edges 01, 12, 20, 03, 13, 23.
 EDGES = np.array([[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]])

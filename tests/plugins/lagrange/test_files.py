@@ -8,6 +8,7 @@ import meshio
 import numpy as np
 import pytest
 from fitted import fitted
+from installed_gmsh import require_gmsh
 from orbiframe_lagrange import gmsh, mfem, vtu
 
 from orbiframe import FitError
@@ -63,7 +64,7 @@ def test_vtk_reads_the_same_cells_and_puts_the_nodes_where_we_do(order, tmp_path
 
 @pytest.mark.parametrize("order", ORDERS)
 def test_gmsh_reads_the_same_nodes_and_puts_them_where_we_do(order, tmp_path):
-    reader = pytest.importorskip("gmsh", reason="gmsh is not installed")
+    reader = require_gmsh()
     mesh = elements(order, "plate_genus2_coarse.off")
     for write in (gmsh.write, gmsh.write_2_2):
         write(tmp_path / "mesh.msh", mesh)
