@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -16,6 +16,7 @@ from orbiframe.errors import ConfigError
 
 # Beyond these no option of any component makes sense, and libraries fail in ways of their own.
 _MOST_BITS, _DEEPEST = 256, 20
+_SHOULD_BE = "Input should be "
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,10 +92,17 @@ def checked_value(annotation: Any, value: object, key: str, places: Mapping[str,
         # TOML has the types of JSON, where a tuple is a list; strict, so that "3" is no number and 1 no truth value.
         return _adapter(annotation).validate_json(json.dumps(value, default=str), strict=True)
     except ValidationError as error:
-        found = error.errors(include_url=False)[0]
-        inner = "".join(f"[{part}]" for part in found["loc"] if isinstance(part, int))
-        reason = found["msg"][0].lower() + found["msg"][1:]
+        found = [(_place_inside(each["loc"]), each["msg"]) for each in error.errors(include_url=False)]
+        inner, first = found[0]
+        # Of a choice of types, each has a reason of its own.
+        others = [text.removeprefix(_SHOULD_BE) for place, text in found[1:] if place == inner and text != first]
+        reason = " or ".join([first[0].lower() + first[1:], *dict.fromkeys(others)])
         raise ConfigError(f"{place_of(key, places)}{key}{inner} = {shown(repr(value), 200)}: {reason}") from error
+
+
+def _place_inside(steps: Sequence[int | str]) -> str:
+    """Which item of a list, or of a list in it."""
+    return "".join(f"[{step}]" for step in steps if isinstance(step, int))
 
 
 def _require_small(value: object, key: str, places: Mapping[str, str], depth: int = 0) -> None:

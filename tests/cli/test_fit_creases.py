@@ -43,6 +43,7 @@ def test_elements_have_creases_as_edges(orbiframe, tmp_path):
     ("options", "words"),
     [
         (("--creases", 0), "data.creases = 0.0: input should be greater than 0"),
+        (("--creases", "sharp"), "data.creases = 'sharp': input should be a valid number or 'marked'"),
         (("--creases", 181), "data.creases = 181.0: input should be less than or equal to 180"),
         (("--creases", 120), "no edge of the mesh bends by 120° or more (the sharpest by 90.0°)"),
         (("--creases", 30, "--basis", "gaussian"), "the functions 'gaussian' keep no creases"),
