@@ -32,7 +32,7 @@ _FIRST_SIZE, _LARGEST_SIZE = 500, 16_000
 _GROWTH = (1.3, 2.0)
 _FIRST_FITTER = "least-squares"
 # No smooth surface through the corners of a facet leaves it by more than this share of its size: a ball has 0.5.
-_MOST_STRAY = 1.0
+_MOST_STRAY = 0.75
 # How the density of functions follows the error: its root, between these shares of the mean, averaged so often.
 _LEAST_ERROR, _MOST_ERROR, _ROUNDS = 0.2, 8.0, 8
 

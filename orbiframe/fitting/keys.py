@@ -58,7 +58,7 @@ _LIKE_MEANING = (
 _RESULT_MEANINGS = {
     "data.means": "what the mesh means: facets, the polyhedron is the truth; smooth, its vertices lie on a smooth"
     " surface; semi-smooth, so they do where facets are curved; auto decides by the share of its "
-    "bending that lies in edges of more than 40°: smooth up to 20 %, facets from 48 % on",
+    "bending that lies in edges of more than 40°: smooth up to 20 %, facets from 47.5 % on",
     "data.lift": "a smooth mesh is mapped a second time, with its vertices lifted onto a first surface, unless its "
     "edges are shorter than 0.3 of the distance of functions, so that no facet shows",
     "data.noise": "root mean square error of each coordinate of the vertices of a smooth mesh, relative to the "

@@ -27,7 +27,7 @@ MEANINGS = ("auto", SMOOTH, SEMI_SMOOTH, FACETS)
 
 # Up to this share of its bending in sharp edges a mesh is taken for smooth, from the other one on for its facets; up to
 # the third one where bends between flats of even width are not counted as sharp.
-_SMOOTH, _SHARP, _EVEN = 0.20, 0.48, 0.02
+_SMOOTH, _SHARP, _EVEN = 0.20, 0.475, 0.02
 # Beside creases nothing bends if no more than this share does.
 _FLAT = 1e-6
 # Facets no longer than this share of the distance of functions leave no mark in a fit.

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
@@ -23,8 +22,6 @@ Ints = NDArray[np.intp]
 
 _MOST_STEPS = 60
 _NEARLY = 1e-4
-# What is added to a unit diagonal in single precision.
-_SHIFT = 1e-6
 # The kind of each entry of a symmetric form of three coordinates.
 KIND = ((0, 1, 2), (1, 3, 4), (2, 4, 5))
 
@@ -112,9 +109,7 @@ def nearly_solved(matrix: Coupled, right: Floats) -> Floats:
     scale = 1 / np.sqrt(diagonal)
 
     def factored(a: int) -> Solver:
-        block = scaled(matrix.block(a), scale[:, a])
-        solve = _in_single_precision(block) if isinstance(block, np.ndarray) else None
-        return first_factored(block) if solve is None else solve
+        return first_factored(scaled(matrix.block(a), scale[:, a]))
 
     solvers = list(in_threads(factored, range(3)))
 
@@ -135,17 +130,6 @@ def nearly_solved(matrix: Coupled, right: Floats) -> Floats:
         before, energy = energy, float(np.vdot(residual, move))
         direction = move + energy / before * direction
     return np.asarray(scale * x)
-
-
-def _in_single_precision(matrix: Floats) -> Solver | None:
-    """Solves nearly, in half the time, which is all that iteration needs; None where rounding is too much."""
-    shifted = matrix.astype(np.float32)
-    shifted[np.diag_indices_from(shifted)] += _SHIFT
-    try:
-        factor = scipy.linalg.cho_factor(shifted, overwrite_a=True, check_finite=False)
-    except scipy.linalg.LinAlgError:
-        return None
-    return lambda right: scipy.linalg.cho_solve(factor, right.astype(np.float32), check_finite=False).astype(np.float64)
 
 
 @compiled(inline=True)

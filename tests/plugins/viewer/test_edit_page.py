@@ -217,12 +217,15 @@ def test_the_keyboard_alone_works(edited, open_browser, tmp_path):
     way = session.history.now.vertices - old
     assert np.allclose(way[2], 0.01 * session._scale * (3 * right + up - back), atol=1e-6 * session._scale)
     assert np.abs(np.delete(way, 2, axis=0)).max() == 0
+    waited(driver.find_element("id", "undo").is_enabled)
     ActionChains(driver).key_down(Keys.CONTROL).send_keys("z").key_up(Keys.CONTROL).perform()
     waited(lambda: session.history.undoable == 0)
     assert np.array_equal(session.history.now.vertices, old)
+    waited(driver.find_element("id", "redo").is_enabled)
     hand = ActionChains(driver).key_down(Keys.CONTROL).key_down(Keys.SHIFT).send_keys("z")
     hand.key_up(Keys.SHIFT).key_up(Keys.CONTROL).perform()
     waited(lambda: session.history.undoable == 1)
+    waited(driver.find_element("id", "save").is_enabled)
     ActionChains(driver).key_down(Keys.CONTROL).send_keys("s").key_up(Keys.CONTROL).perform()
     waited(lambda: not session.state["unsaved"])
     assert np.array_equal(read(tmp_path / "plate.off", REGISTRY).vertices, session.history.now.vertices)

@@ -6,6 +6,7 @@ import base64
 import re
 import threading
 import urllib.request
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -134,7 +135,7 @@ def test_the_command_serves_until_it_is_interrupted(orbiframe, tmp_path, monkeyp
         raise KeyboardInterrupt
 
     monkeypatch.setattr(view_command, "_open", opened.append)
-    monkeypatch.setattr(view_command.time, "sleep", interrupted)
+    monkeypatch.setattr(view_command, "time", SimpleNamespace(sleep=interrupted))
     ran = orbiframe("view", tmp_path / "torus.npz")
     assert ran.status == 0, ran.err
     assert answers == [200]
