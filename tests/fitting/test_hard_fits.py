@@ -64,7 +64,7 @@ def test_faces_that_meet_themselves_are_mapped_where_twins_are_given() -> None:
     assert len(faces_with_repeated_vertices(mesh))
     mapped = mapping_of(mesh, config(60), Stages(REGISTRY, lambda *_: None)).for_size(60)
     assert mapped.triangulation.not_positive == 0
-    assert mapped.triangulation.polyhedron.euler_characteristic == 0
+    assert mapped.triangulation.orbifold.euler_characteristic == 0
     # Its thin parts need hundreds of thousands of functions.
     with pytest.raises(FitError, match=r"the surface leaves the mesh by .* too few for the thin parts"):
         pipeline.fit(mesh, config(60), REGISTRY)
