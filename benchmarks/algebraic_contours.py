@@ -101,7 +101,10 @@ def main() -> None:
     """All sizes."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("port", type=Path, help="checkout of pyalgcon")
-    sys.path.insert(0, str(parser.parse_args().port / "src"))
+    sources = parser.parse_args().port / "src"
+    if not (sources / "pyalgcon").is_dir():
+        parser.error(f"there is no package pyalgcon in {sources}; give a checkout of it")
+    sys.path.insert(0, str(sources))
     sys.modules["cholespy"] = types.ModuleType("cholespy")
     vars(sys.modules["cholespy"]).update(CholeskySolverD=_Solver, MatrixType=_Kind)
     for size in SIZES:
