@@ -1,6 +1,7 @@
 """The public names of orbiframe.meshes, each with the module it lives in."""
 
 from .bisection import Bisection as Bisection, bisected as bisected
+from .boundary_loops import Loop as Loop, boundary_loops as boundary_loops
 from .coincident_points import clusters as clusters, first_of_each as first_of_each
 from .defects import Defect as Defect, defects_of as defects_of, require_closed_surface as require_closed_surface
 from .edge_paths import (

@@ -1,5 +1,7 @@
 """The public names of orbiframe.surfaces, each with the module it lives in."""
 
+from .border import inside as inside
+from .border_curve import BorderCurve as BorderCurve, border_curves as border_curves
 from .colour_scale import ColourScale as ColourScale
 from .complex_structure import PeriodMatrix as PeriodMatrix, period_matrix as period_matrix
 from .curved_edges import edge_curves as edge_curves

@@ -21,7 +21,7 @@ _FINE = 4
 
 def surface_area(surface: OrbifoldSurface) -> float:
     """The area of a surface in space, from a fine mesh on it."""
-    return float(_map_areas(surface).sum()) * surface.scale**2
+    return float(map_areas(surface)[surface.triangulation.own_faces].sum()) * surface.scale**2
 
 
 def even_mesh(surface: OrbifoldSurface, count: int, seed: int = 0) -> SurfaceMesh:
@@ -62,14 +62,19 @@ def creased_mesh(surface: OrbifoldSurface, count: int) -> SurfaceMesh:
 
 def scattered(surface: OrbifoldSurface, count: int, seed: int = 0) -> Points:
     """Random points of X/H, one in every share of 1 / count of the area in space, taken along the triangles."""
-    area, rng = _map_areas(surface), np.random.default_rng(seed)
+    return scattered_over(surface, map_areas(surface), count, seed)
+
+
+def scattered_over(surface: OrbifoldSurface, area: Floats, count: int, seed: int) -> Points:
+    """Random points of X/H, one in every share of what the triangles of the map count, (F,)."""
+    rng = np.random.default_rng(seed)
     upto = np.cumsum(area)
     wanted = (np.arange(count) + rng.random(count)) / count * upto[-1]
     face = np.minimum(np.searchsorted(upto, wanted), len(area) - 1)
     return surface.triangulation.locate(face, rng.dirichlet(np.ones(3), count))
 
 
-def _map_areas(surface: OrbifoldSurface) -> Floats:
+def map_areas(surface: OrbifoldSurface) -> Floats:
     """The area in space of every triangle of the map, its corners on the surface, before the surface is scaled."""
     flat = surface.triangulation
     places = surface.basis.values(Points(flat.patch, flat.points), surface.coefficients)
