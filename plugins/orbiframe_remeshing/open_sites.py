@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe import FitError, OrbifoldSurface, Points
-from orbiframe.delaunay import SiteTriangulation, Geodesics, delaunay, lloyd_step, vertex_points, with_edges_along
+from orbiframe.delaunay import Geodesics, SiteTriangulation, delaunay, lloyd_step, vertex_points, with_edges_along
 from orbiframe.surfaces import BorderCurve, border_curves, inside
 from orbiframe.triangulations import GeodesicTriangulation, Locator
 from orbiframe_remeshing.even_sites import map_areas, scattered_over

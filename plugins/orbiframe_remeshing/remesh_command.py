@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from orbiframe import FitError, Registry, UsageError
+from orbiframe import Registry, UsageError
 from orbiframe.files import require_apart, require_destination
 from orbiframe.fitting import add_boundary
 

@@ -134,5 +134,3 @@ def test_a_domain_has_no_more_vertices_than_the_mesh():
     mapped = triangulated("torus", 2)
     with pytest.raises(FitError, match="refine the mesh"):
         spline_domain(mapped, 10_000)
-
-
