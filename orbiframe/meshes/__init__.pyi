@@ -1,7 +1,6 @@
 """The public names of orbiframe.meshes, each with the module it lives in."""
 
 from .bisection import Bisection as Bisection, bisected as bisected
-from .boundary_loops import Loop as Loop, boundary_loops as boundary_loops
 from .coincident_points import clusters as clusters, first_of_each as first_of_each
 from .defects import Defect as Defect, defects_of as defects_of, require_closed_surface as require_closed_surface
 from .edge_paths import (
@@ -18,6 +17,7 @@ from .edge_paths import (
 )
 from .face_diagonals import outline as outline, triangulated as triangulated
 from .fans import fan_labels as fan_labels
+from .loops import Loop as Loop, boundary_loops as boundary_loops
 from .marked_edges import MarkedEdges as MarkedEdges
 from .orientation import oriented as oriented, reversed_faces as reversed_faces
 from .polyhedron import Polyhedron as Polyhedron

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from scipy.special import roots_legendre
 
 from orbiframe.functions.basis import DifferentiableBasis
-from orbiframe.meshes.boundary_loops import boundary_loops
+from orbiframe.meshes.loops import boundary_loops
 from orbiframe.meshes.nearest_points import NearestPoints
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
@@ -127,7 +127,7 @@ def nearest_on_border(surface: OrbifoldSurface, targets: Floats) -> tuple[Points
     """
     border, at = surface.triangulation.border, (np.arange(_PARTS) + 0.5) / _PARTS
     tree = cKDTree(surface.basis.values(_along(surface, border, at), surface.coefficients))
-    found = [_searched(surface, border, near, targets) for near in tree.query(targets, 2)[1].T]
+    found = [_searched(surface, border, near, targets) for near in np.asarray(tree.query(targets, 2)[1]).T]
     better = found[1][2] < found[0][2]
     halfedges, share, away = (np.where(better, other, one) for one, other in zip(*found, strict=True))
     return _on_edges(surface, halfedges, share), away

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from orbiframe.meshes.boundary_loops import boundary_loops
+from orbiframe.meshes.loops import boundary_loops
 from orbiframe.meshes.submesh import submesh
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.surfaces.surface import OrbifoldSurface

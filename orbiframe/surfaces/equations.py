@@ -28,8 +28,8 @@ def poisson(forms: SurfaceForms, source: Floats) -> Floats:
     total, size = float(forms.weights @ values), float(forms.weights @ np.abs(values))
     if abs(total) > _BALANCED * size:
         raise FitError(
-            f"the source has the integral {total:.6g} and no solution: where nothing flows out it must be 0; subtract its "
-            f"mean, {total / forms.area:.6g}"
+            f"the source has the integral {total:.6g} and no solution: where nothing flows out it must be 0; subtract "
+            f"its mean, {total / forms.area:.6g}"
         )
     right = forms.against(forms.weights * (values - total / forms.area))
     return _of_mean_zero(forms, right)
@@ -49,7 +49,8 @@ def biharmonic(forms: SurfaceForms, source: Floats) -> Floats:
 def heat(forms: SurfaceForms, start: Floats, time: float, steps: int = 64) -> Floats:
     """The coefficients (size,) of what the function with coefficients `start` has become after a time of heat flow.
 
-    Nothing flows across a boundary. By so many equal steps of Crank and Nicolson's method after two of Euler's, whose halves make rough starts smooth:
+    Nothing flows across a boundary. By so many equal steps of Crank and Nicolson's method after two of Euler's, whose
+    halves make rough starts smooth:
     second order in time. Raises FitError for a time that is not positive.
     """
     if not (time > 0 and steps > 1):

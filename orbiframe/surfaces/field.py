@@ -77,12 +77,12 @@ class Field:
     def integral(self) -> Floats:
         """The integrals (q,) of the functions over the surface, by its area in space."""
         over = within(self.surface, self.basis, _GAUSS)
-        return np.asarray(over.area @ self.evaluate(over.points)) * self.surface.scale**2
+        return np.asarray(over.area @ self.evaluate(over.points) * self.surface.scale**2)
 
     def mean(self) -> Floats:
         """The means (q,) of the functions over the surface, by its area in space."""
         over = within(self.surface, self.basis, _GAUSS)
-        return np.asarray(over.area @ self.evaluate(over.points)) / over.area.sum()
+        return np.asarray(over.area @ self.evaluate(over.points) / over.area.sum())
 
     @property
     def error(self) -> Floats | None:

@@ -47,7 +47,8 @@ class Spectrum:
 def spectrum(forms: SurfaceForms, count: int) -> Spectrum:
     """The `count` smallest eigenvalues of the surface of the forms with their functions, multiple ones as often.
 
-    At a boundary their derivative across it is 0 (Neumann). By Galerkin's method in the basis of the forms, so they are upper bounds up to quadrature and rounding; by Lanczos'
+    At a boundary their derivative across it is 0 (Neumann).
+    By Galerkin's method in the basis of the forms, so they are upper bounds up to quadrature and rounding; by Lanczos'
     method on the inverse of the shifted problem from a start that is always the same. Raises FitError for a count below
     1 or above what the basis has.
 

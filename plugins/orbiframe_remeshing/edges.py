@@ -16,7 +16,9 @@ Bools = NDArray[np.bool_]
 class Edges(NamedTuple):
     """All edges of a mesh: triangles (a, b, c) and, across the edge from a to b, (b, a, d) or turned round.
 
-    At the boundary of an open one the second triangle is the first again, and d is c. first, second: (E,), the triangles; a, b, c, d: (E,), the vertices; key: (E,), one number for each pair of ends,
+    At the boundary of an open one the second triangle is the first again, and d is c.
+
+    first, second: (E,), the triangles; a, b, c, d: (E,), the vertices; key: (E,), one number for each pair of ends,
     rising; vertex_count.
     """
 

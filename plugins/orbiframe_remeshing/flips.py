@@ -41,7 +41,8 @@ def flipped_for_valences(
 ) -> Ints:
     """Triangles (F, 3) of which no flip brings the numbers of them at four vertices nearer to six; kept: as above.
 
-    regular: other numbers than six, (V,). The sum of squares is what falls. No flip makes a least angle below 25 degrees smaller.
+    regular: other numbers than six, (V,). The sum of squares is what falls. No flip makes a least angle below
+    25 degrees smaller.
     """
     while True:
         edges = edges_of(triangles, len(places))

@@ -21,7 +21,8 @@ def quality(mesh: Polyhedron) -> dict[str, Any]:
 
     angles in degrees: the least, the mean of the least of every face, the greatest, the number of faces with one below
     25 and the middle of the worst face; edges: mean, standard deviation, shortest and longest; regular: the share of
-    vertices with one edge more or less than six (triangles) or four (quadrilaterals), or just as many, of those off a boundary.
+    vertices with one edge more or less than six (triangles) or four (quadrilaterals), or just as many, of those
+    off a boundary.
     """
     size = int(mesh.face_sizes[0])
     faces = mesh.tail.reshape(-1, size)

@@ -40,7 +40,10 @@ def relaxed(mesh: SurfaceMesh) -> SurfaceMesh:
 
 
 def stepped(mesh: SurfaceMesh) -> SurfaceMesh:
-    """Every vertex off creases and boundary a step nearer to the centroid of its triangles, at most 0.35 of its shortest edge."""
+    """Every vertex off creases and boundary a step nearer to the centroid of its triangles.
+
+    At most 0.35 of its shortest edge.
+    """
     flat = np.concatenate([mesh.jets, np.zeros_like(mesh.jets)])
     longest = _FAR * shortest_edges(mesh.places, mesh.triangles)
     step = foot_step(flat, centroids(mesh.places, mesh.triangles), longest, bent=False)

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 from orbiframe import FitError, OrbifoldSurface, Polyhedron, UsageError, surface_type
 from orbiframe.meshes import boundary_loops, require_closed_surface
-from orbiframe.surfaces import border_curves
+from orbiframe.surfaces import border_curves, edge_for
 from orbiframe_remeshing.even_sites import creased_mesh, even_mesh, surface_area
-from orbiframe_remeshing.open_sites import edge_for, open_mesh
+from orbiframe_remeshing.open_sites import open_mesh
 from orbiframe_remeshing.quads import quadrilaterals
 from orbiframe_remeshing.relaxation import relaxed
 from orbiframe_remeshing.surface_mesh import SurfaceMesh

@@ -15,7 +15,7 @@ from orbiframe.errors import ConfigError, FitError, FormatError, TopologyError
 from orbiframe.files import gate, surface_file
 from orbiframe.fitting.parts import fit_parts
 from orbiframe.fitting.pipeline import Result
-from orbiframe.meshes.boundary_loops import boundary_loops
+from orbiframe.meshes.loops import boundary_loops
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import area
 from orbiframe.meshes.surface_type import surface_type
