@@ -83,6 +83,28 @@ class BorderCurve:
         frames = np.array([self._carried(a, b) for a, b in zip(first.tolist(), last.tolist(), strict=True)])
         return here.patch, here.x, self.surface.orbifold.geometry.act(frames, there.x)
 
+    def unrolled(self, start: float, arc: Floats) -> tuple[int, Floats]:
+        """Points at rising arc lengths, (n,), from a start on, in the frame of one patch: the patch, and (n, 3)."""
+        first = int(np.floor(self._at([start])[0]))
+        edge = np.floor(self._at(arc)).astype(np.intp) + np.where(arc >= self.length, len(self.halfedges), 0)
+        there, frame, reached = self.points(arc), np.eye(3), first
+        x = np.empty((len(arc), 3))
+        for k, last in enumerate(edge.tolist()):
+            frame, reached = frame @ self._carried(reached, last), last
+            x[k] = self.surface.orbifold.geometry.act(frame, there.x[k])
+        return int(self.points([start]).patch[0]), x
+
+    def knots(self, start: float, end: float) -> Floats:
+        """Arc lengths of the vertices of the refined mesh between two, beyond the end of the loop too."""
+        own = np.concatenate([self.way[:-1:_PARTS] + turn * self.length for turn in (0, 1)])
+        return np.asarray(own[(own > start) & (own < end)])
+
+    def on_left(self, arc: float) -> bool:
+        """Whether the surface lies on the left of the walk, in the frame of the patch of the point at an arc length."""
+        edge = min(int(np.floor(self._at([arc])[0])), len(self.halfedges) - 1)
+        lifts = self.surface.triangulation.lifts[self.halfedges[edge] // 3]
+        return bool((np.linalg.det(lifts) > 0) == self.forward[edge])
+
     def _carried(self, first: int, last: int) -> Floats:
         """The isometry from the frame of one edge of the loop to that of another, along it."""
         found, count = np.eye(3), len(self.halfedges)

@@ -18,6 +18,8 @@ Bools = NDArray[np.bool_]
 
 # Where the boundary turns by more it has a corner.
 _CORNER = np.radians(30)
+# Points of a piece, at least.
+_FEWEST = 4
 
 
 class BorderPieces(NamedTuple):
@@ -63,6 +65,16 @@ class BorderPieces(NamedTuple):
         ]
         patch, start, end = (np.concatenate(table) for table in zip(*parts, strict=True))
         return Geodesics(patch, start, end, np.stack([np.arange(len(patch)), self.following], axis=1))
+
+    def unrolled(self, piece: int) -> tuple[Floats, Floats, bool]:
+        """A piece by the vertices of the refined mesh on it, in the frame of one patch: the shares of its way at which
+        they lie, four at least, the points (n, 3), and whether the surface is on their left.
+        """
+        curve, start, end = self.curves[self.curve[piece]], float(self.start[piece]), float(self.end[piece])
+        arc = np.concatenate([[start], curve.knots(start, end), [end]])
+        while len(arc) < _FEWEST:
+            arc = np.sort(np.concatenate([arc, (arc[:-1] + arc[1:]) / 2]))
+        return (arc - start) / (end - start), curve.unrolled(start, arc)[1], curve.on_left(start)
 
     def halved(self, some: Bools) -> BorderPieces:
         """Some pieces, (n,), in two."""
