@@ -86,12 +86,23 @@ class BorderPieces(NamedTuple):
         return BorderPieces.of(self.curves, starts)
 
 
-def even_pieces(curves: list[BorderCurve], edge: float, apart: float) -> BorderPieces:
+def even_pieces(curves: list[BorderCurve], edge: float, apart: float, *, at_vertices: bool = False) -> BorderPieces:
     """Pieces of curves that are about as long as an edge and end at corners.
 
-    Corners that are nearer to a sharper one than a share of the edge are none.
+    Corners that are nearer to a sharper one than a share of the edge are none. at_vertices: all end at vertices of the
+    refined mesh.
     """
-    return BorderPieces.of(curves, [_even(curve, edge, apart) for curve in curves])
+    starts = [_even(curve, edge, apart) for curve in curves]
+    if at_vertices:
+        starts = [_snapped(curve, arc) for curve, arc in zip(curves, starts, strict=True)]
+    return BorderPieces.of(curves, starts)
+
+
+def _snapped(curve: BorderCurve, arc: Floats) -> Floats:
+    """The vertices of the refined mesh that are nearest to arc lengths, where they are three at least."""
+    knots = np.concatenate([[0.0], curve.knots(0.0, curve.length), [curve.length]])
+    found = np.unique(knots[np.abs(knots[:, None] - arc).argmin(axis=0)] % curve.length)
+    return found if len(found) >= 3 else arc
 
 
 def _even(curve: BorderCurve, edge: float, apart: float) -> Floats:

@@ -71,12 +71,13 @@ def open_triangulation(
 
     Those on the boundary are even along it from corner to corner. The others come to lie by Lloyd's steps on X, whose
     closing faces have some sites too. Then pieces of the boundary are made edges, by flips. apart: corners that are
-    nearer to sharper ones than this share of an edge are none; even: an even number of pieces, so of triangles too.
-    Raises FitError where pieces of the boundary do not become edges, and for a basis without derivatives.
+    nearer to sharper ones than this share of an edge are none; even: an even number of pieces, so of triangles too,
+    that end at vertices of the refined mesh. Raises FitError where pieces of the boundary do not
+    become edges, and for a basis without derivatives.
     """
     curves = border_curves(surface)
     area = float(map_areas(surface)[surface.triangulation.own_faces].sum())
-    pieces = even_pieces(curves, edge_for(count, area, sum(curve.length for curve in curves)), apart)
+    pieces = even_pieces(curves, edge_for(count, area, sum(curve.length for curve in curves)), apart, at_vertices=even)
     if even and len(pieces.curve) % 2:
         pieces = pieces.halved(np.arange(len(pieces.curve)) == (pieces.end - pieces.start).argmax())
     free = _spread(surface, pieces, max(count - len(pieces.curve), 1), seed)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import Akima1DInterpolator
 
 from orbiframe import Geometry
 from orbiframe.surfaces import OpenTriangulation
@@ -21,7 +21,7 @@ class RimSide(NamedTuple):
 
     quad: int
     side: int
-    excess: CubicSpline
+    excess: Akima1DInterpolator
 
     def added(self, s: Floats, t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """What it adds to p, p_s, p_t and p_st of its quadrilateral: less and less to the opposite side."""
@@ -59,4 +59,4 @@ def rim_side(
     excess[[0, -1]] = 0.0
     if place[1] >= 2:
         share, excess = 1 - share[::-1], excess[::-1]
-    return RimSide(*place, CubicSpline(share, excess))
+    return RimSide(*place, Akima1DInterpolator(share, excess, method="makima"))
