@@ -47,7 +47,9 @@ def face_colours(surface: OrbifoldSurface, domain: QuadDomain) -> FaceColours | 
     face, barycentric, area = _places(surface, domain.count)
     found = Locator(domain.triangles).locate(surface.points(face, barycentric))
     votes = np.zeros((domain.count, len(colours)))
-    np.add.at(votes, (domain.pair[found.face], which.ravel()[face[found.order]]), area[found.order])
+    quad = domain.pair[found.face]
+    own = quad >= 0
+    np.add.at(votes, (quad[own], which.ravel()[face[found.order[own]]]), area[found.order[own]])
     return FaceColours(colours[votes.argmax(axis=1)], votes.max(axis=1) / np.maximum(votes.sum(axis=1), _tiny()))
 
 

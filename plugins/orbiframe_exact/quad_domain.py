@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,10 +11,12 @@ from numpy.typing import NDArray
 from scipy.optimize import Bounds, LinearConstraint, milp
 from scipy.sparse import coo_array
 
-from orbiframe import FitError, OrbifoldSurface, Points
+from orbiframe import FitError, OrbifoldSurface, Points, surface_type
 from orbiframe.delaunay import delaunay_of_vertices, domain_for, vertex_points
+from orbiframe.surfaces import OpenTriangulation, border_curves, map_areas, open_triangulation
 from orbiframe.triangulations import GeodesicTriangulation
 from orbiframe_exact.quad_points import QuadPoints, settled
+from orbiframe_exact.rim_sides import RimSide, rim_side
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -27,6 +30,10 @@ _MEETS_ITSELF = -10.0
 _BLOCK, _SQUARE_ENOUGH = 2.0, 0.1
 # How many vertices more are tried, as shares of those asked for.
 _MORE = (0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.5)
+# Corners of a boundary that are nearer than this share of an edge to a sharper one are rounded.
+_APART = 0.02
+# Shares that are tried at a boundary, whose corners may ask for many sides.
+_MORE_AT_RIMS = (0.0, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0, 8.0)
 _LOOK = np.linspace(0.02, 0.98, 7)
 
 
@@ -37,7 +44,8 @@ class QuadDomain:
     Side k of a quadrilateral runs from its corner k to the next: along s at t = 0, along t at s = 1, and back. edge:
     (Q, 4), the edge at every side; rising: (Q, 4), whether the parameter of the edge grows with s or t there; ends:
     (E, 2), the vertices where every edge begins and ends; orientable: whether all can be seen from one side; triangles:
-    those that are paired, and pair: (F,), the quadrilateral of each.
+    those that are paired, and pair: (F,), the quadrilateral of each, -1 for those beyond a boundary; closed: whether
+    there is none.
     """
 
     points: QuadPoints
@@ -47,6 +55,7 @@ class QuadDomain:
     orientable: bool
     triangles: GeodesicTriangulation
     pair: Ints
+    closed: bool = True
 
     @property
     def count(self) -> int:
@@ -60,13 +69,15 @@ class QuadDomain:
         return _has_twins(self.ends[self.edge, first])
 
     def sides_of_edges(self) -> Ints:
-        """The two sides 4 q + k at every edge, (E, 2)."""
-        return np.argsort(self.edge.ravel(), kind="stable").reshape(-1, 2)
+        """The two sides 4 q + k at every edge, (E, 2); at a boundary the one side twice."""
+        order = np.argsort(self.edge.ravel(), kind="stable")
+        _, first, number = np.unique(self.edge.ravel()[order], return_index=True, return_counts=True)
+        return np.stack([order[first], order[first + number - 1]], axis=1)
 
 
 def default_count(surface: OrbifoldSurface) -> int:
     """How many faces a surface has where none are asked for: 16 and 8 for each unit of |chi|."""
-    return 16 + 8 * abs(int(surface.orbifold.euler_characteristic))
+    return 16 + 8 * abs(surface_type(surface.own_mesh).euler_characteristic)
 
 
 def quad_domain(surface: OrbifoldSurface, count: int, blocks: Ints | None = None) -> QuadDomain:
@@ -79,6 +90,8 @@ def quad_domain(surface: OrbifoldSurface, count: int, blocks: Ints | None = None
     blocks: (B, 4), quadrilaterals of vertices of the input. Their corners are the vertices then, and a pair that is one
     of them is worth more; they count for nothing where a pair comes out far from square.
     """
+    if surface.triangulation.inside is not None:
+        return _open_domain(surface, count)
     if blocks is not None:
         found = _of_blocks(surface, blocks)
         if found is not None:
@@ -91,6 +104,26 @@ def quad_domain(surface: OrbifoldSurface, count: int, blocks: Ints | None = None
         if found is not None:
             return found
     raise FitError(f"no {count} faces cover this surface; ask for more of them, such as --faces {2 * count}")
+
+
+def _open_domain(surface: OrbifoldSurface, count: int) -> QuadDomain:
+    """About `count` quadrilaterals on a surface with a boundary, along which their sides run from corner to corner."""
+    area, rim = (float(x) for x in (map_areas(surface)[surface.triangulation.own_faces].sum(), _rim_length(surface)))
+    for more in _MORE_AT_RIMS:
+        wanted = (1 + more) * count
+        vertices = round(wanted + rim / (2 * math.sqrt(area / (math.sqrt(3) / 2) / wanted)))
+        sites = open_triangulation(surface, max(vertices, 4), apart=_APART, even=True)
+        found, quality = _paired(surface, sites.domain, rim=sites)
+        if found is not None and quality > 0:
+            return found
+    raise FitError(
+        f"no {count} faces cover this surface up to its boundary, which has corners or bends that they cannot follow; "
+        f"ask for more of them, such as --faces {4 * count}, or write a mesh, to part.ply"
+    )
+
+
+def _rim_length(surface: OrbifoldSurface) -> float:
+    return sum((curve.length for curve in border_curves(surface)), 0.0)
 
 
 def _of_blocks(surface: OrbifoldSurface, blocks: Ints) -> QuadDomain | None:
@@ -106,12 +139,18 @@ def _of_blocks(surface: OrbifoldSurface, blocks: Ints) -> QuadDomain | None:
 
 
 def _paired(
-    surface: OrbifoldSurface, sites: GeodesicTriangulation, blocks: Ints | None = None
+    surface: OrbifoldSurface,
+    sites: GeodesicTriangulation,
+    blocks: Ints | None = None,
+    rim: OpenTriangulation | None = None,
 ) -> tuple[QuadDomain | None, float]:
     """The pairs that are worth most, None where none cover all, and the least quality of one."""
     halfedge, vertex = np.arange(3 * sites.face_count), sites.vertex.ravel()
     start, end = vertex, vertex[_following(halfedge)]
-    inner = np.flatnonzero(sites.reference & (halfedge // 3 != sites.twin // 3))
+    kept = np.ones(sites.face_count, dtype=np.bool_) if rim is None else rim.kept
+    wall = np.zeros(len(halfedge), dtype=np.bool_) if rim is None else rim.wall
+    mates = (halfedge // 3 != sites.twin // 3) & kept[halfedge // 3] & kept[sites.twin // 3] & ~wall
+    inner = np.flatnonzero(sites.reference & mates)
     corners, sides, back = _quads(sites, inner)
     corner = np.where(back, end[sides], start[sides])
     twice = _has_twins(corner)
@@ -120,7 +159,7 @@ def _paired(
     worth = _PAIR + quality + np.where(twice, _MEETS_ITSELF, 0.0)
     if blocks is not None:
         worth += np.where(_are_among(corner, blocks), _BLOCK, 0.0)
-    chosen = _matching(np.stack([inner, sites.twin[inner]]) // 3, worth, sites.face_count)
+    chosen = _matching((np.cumsum(kept) - 1)[np.stack([inner, sites.twin[inner]]) // 3], worth, int(kept.sum()))
     if chosen is None:
         return None, 0.0
     sides, back = sides[chosen], back[chosen]
@@ -128,20 +167,32 @@ def _paired(
     edges, edge = np.unique(reference, return_inverse=True)
     if _has_twins(edge.reshape(sides.shape)).any():
         return None, 0.0
-    pair = np.empty(sites.face_count, dtype=np.intp)
+    pair = np.full(sites.face_count, -1)
     pair[inner[chosen] // 3] = pair[sites.twin[inner[chosen]] // 3] = np.arange(len(chosen))
     along = ((sides == reference) | sites.same[sides]) ^ back
     weighted = corners[chosen] * _weights(surface, sites)[corner[chosen]][..., None]
+    rims = () if rim is None else tuple(_rims(rim, wall, sides, corner[chosen], weighted))
     found = QuadDomain(
-        QuadPoints(surface, weighted, points.patch[chosen], points.placement[chosen]),
+        QuadPoints(surface, weighted, points.patch[chosen], points.placement[chosen], rims),
         edge.reshape(sides.shape),
         along ^ np.array([False, False, True, True]),
         np.stack([start[edges], end[edges]], axis=1),
-        surface.orbifold.orientable,
+        surface_type(surface.own_mesh).orientable,
         sites,
         pair,
+        rim is None,
     )
     return found, float((quality - twice)[chosen].min())
+
+
+def _rims(rim: OpenTriangulation, wall: Bools, sides: Ints, corner: Ints, weighted: Floats) -> Iterator[RimSide]:
+    """The sides of quadrilaterals along the boundary."""
+    piece = dict(zip(rim.domain.edge[rim.edges].tolist(), range(len(rim.edges)), strict=True))
+    first = rim.vertex[: len(rim.edges)]
+    for q, k in zip(*(x.tolist() for x in np.nonzero(wall[sides])), strict=True):
+        own = piece[int(rim.domain.edge[sides[q, k]])]
+        ends = weighted[q, k], weighted[q, (k + 1) % 4]
+        yield rim_side(rim.domain.geometry, rim, own, (q, k), ends, back=bool(first[own] != corner[q, k]))
 
 
 def _quads(sites: GeodesicTriangulation, inner: Ints) -> tuple[Floats, Ints, Bools]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from orbiframe import FitError, Geometry, OrbifoldSurface, Points
 from orbiframe.functions import DifferentiableBasis
+from orbiframe_exact.rim_sides import RimSide
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -20,13 +21,15 @@ class QuadPoints:
 
     corners: (Q, 4, 3), counterclockwise vectors on the rays of points of X; patch: (Q,) and placement: (Q, 3, 3), the
     isometry from the frame of each to that of a patch. The point (s, t) of a quadrilateral is the projection to X of
-    the bilinear combination of its corners, so that a side depends on its two ends alone.
+    the bilinear combination of its corners, so that a side depends on its two ends alone. rim: the sides that run along
+    the boundary of the surface, whose quadrilaterals are filled out to them (Coons).
     """
 
     surface: OrbifoldSurface
     corners: Floats
     patch: Ints
     placement: Floats
+    rim: tuple[RimSide, ...] = ()
 
     def jets(self, quad: Ints, s: Floats, t: Floats, order: int) -> list[Floats]:
         """The surface at points (n,) of quadrilaterals: F; and F_s, F_t for order 1; and F_st for order 2; (n, 3) each.
@@ -37,7 +40,7 @@ class QuadPoints:
         if not isinstance(basis, DifferentiableBasis):
             raise FitError("the functions have no derivatives, which smooth faces need; use others, such as 'gaussian'")
         geometry = self.surface.orbifold.geometry
-        x, *vectors = projected(geometry, *_bilinear(self.corners[quad], s[:, None], t[:, None]))
+        x, *vectors = projected(geometry, *self._flat(quad, s, t))
         place = geometry.settle(geometry.act(self.placement[quad], x))
         points, step = settled(self.surface, Points(self.patch[quad], place))
         frame = geometry.frame(points.x)
@@ -52,6 +55,15 @@ class QuadPoints:
             a, b, c = along
             bend = a[0] * b[0] * d[3] + (a[0] * b[1] + a[1] * b[0]) * d[4] + a[1] * b[1] * d[5]
             found.append(bend + c[0] * d[1] + c[1] * d[2])
+        return found
+
+    def _flat(self, quad: Ints, s: Floats, t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """What is projected: p, p_s, p_t and p_st."""
+        found = _bilinear(self.corners[quad], s[:, None], t[:, None])
+        for rim in self.rim:
+            own = np.flatnonzero(quad == rim.quad)
+            for table, more in zip(found, rim.added(s[own], t[own]), strict=True):
+                table[own] += more
         return found
 
 
