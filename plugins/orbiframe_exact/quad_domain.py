@@ -60,8 +60,23 @@ class QuadDomain:
         return _has_twins(self.ends[self.edge, first])
 
     def sides_of_edges(self) -> Ints:
-        """The two sides 4 q + k at every edge, (E, 2)."""
-        return np.argsort(self.edge.ravel(), kind="stable").reshape(-1, 2)
+        """The two sides 4 q + k at every edge, (E, 2); -1 for one that is not there."""
+        order = np.argsort(self.edge.ravel(), kind="stable")
+        edge = self.edge.ravel()[order]
+        first = np.searchsorted(edge, np.arange(len(self.ends)))
+        found = np.full((len(self.ends), 2), -1)
+        found[edge, np.arange(len(edge)) - first[edge]] = order
+        return found
+
+    @property
+    def group_of_faces(self) -> Ints:
+        """What `pair` says of the triangles under every face of a file, in the order of the faces."""
+        return np.arange(self.count)
+
+    @property
+    def smooth(self) -> Bools:
+        """The edges at which the faces are to have common tangent planes, (E,): all of them."""
+        return np.ones(len(self.ends), dtype=np.bool_)
 
 
 def default_count(surface: OrbifoldSurface) -> int:
