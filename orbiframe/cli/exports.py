@@ -126,9 +126,14 @@ def _shortcomings(found: dict[str, Any]) -> Iterator[str]:
     """What a user should know of faces that are not as near, as smooth or as sound as they should be."""
     place = ", ".join(f"{x:.6g}" for x in found["worst"])
     if not found["reached"]:
+        why = (
+            "where the surface may have a kink itself; a larger --size helps"
+            if "planes" in found
+            else "where the surface may be pinched; try more --faces"
+        )
         yield (
             f"the faces of the file are {found['error']:.1e} of the diagonal from the surface, and neighbours meet at "
-            f"{found['angle']:.2f}° near ({place}), where the surface may be pinched; try more --faces"
+            f"{found['angle']:.2f}° near ({place}), {why}"
         )
     if not found.get("valid", True):
         yield (

@@ -217,7 +217,7 @@ class FewFaces:
         m = unit(normal - tangent * (dot(normal, tangent) / dot(tangent, tangent)))
         return curve, tangent, across - m * dot(across, m)
 
-    def _border_normals(self, quads: list[int], at: list[Floats], own: Floats) -> Floats:
+    def _border_normals(self, quads: list[int], at: list[Floats], own: Floats) -> Floats:  # noqa: ARG002
         """The normals that both faces have in common at places of the borders of faces, from those of the surface."""
         return own
 
@@ -269,7 +269,7 @@ class FewFaces:
         self.worst = evaluate(self.edge_breaks[e], self.edge_poles[e], worst[[e]])[0]
         return found
 
-    def _both_normals(self, edge: int, sides: list[int], u: Floats) -> tuple[Floats, Floats]:
+    def _both_normals(self, edge: int, sides: list[int], u: Floats) -> tuple[Floats, Floats]:  # noqa: ARG002
         """The normals of both faces at an edge."""
         return self._normals(sides[0], u), self._normals(sides[1], u)
 

@@ -99,7 +99,8 @@ def quad_domain(surface: OrbifoldSurface, count: int, blocks: Ints | None = None
 
     The quality of a pair is the least sine between the two directions on the surface, or the root of the least area
     element over the greatest. Pairs that meet a vertex twice come last. Where triangles cannot be paired, or a
-    quadrilateral would be glued to itself or not be convex, there are more vertices. Raises FitError where that does not help.
+    quadrilateral would be glued to itself or not be convex, there are more vertices; where none of these numbers makes
+    all convex, the best one is taken. Raises FitError where triangles cannot be paired at any.
 
     blocks: (B, 4), quadrilaterals of vertices of the input. Their corners are the vertices then, and a pair that is one
     of them is worth more; they count for nothing where a pair comes out far from square.

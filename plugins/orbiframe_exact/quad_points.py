@@ -56,7 +56,6 @@ class QuadPoints:
             found.append(bend + c[0] * d[1] + c[1] * d[2])
         return found
 
-
     def parameters(self, quad: Ints, x: Floats) -> tuple[Floats, Floats]:
         """The parameters s and t, from 0 to 1, at points x (n, 3) of quadrilaterals, in the frame of each.
 
