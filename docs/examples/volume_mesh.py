@@ -35,7 +35,7 @@ NEAR = 1e-9
 ROUNDS = 6
 # Elements are mended whose least Jacobian is below this share of the straight element's, with so many layers about
 # them; the barrier rises so often at most, with so many steps each time.
-ENOUGH, LAYERS, RISES, STEPS = 0.1, 2, 12, 60
+ENOUGH, LAYERS, RISES, STEPS = 0.2, 2, 12, 60
 
 
 class Volume(NamedTuple):
@@ -211,10 +211,10 @@ class Elements(NamedTuple):
 
     @classmethod
     def read(cls) -> Elements | None:
-        """Those with a bad Jacobian, and all within so many layers; None where all are good."""
+        """Those with a bad Jacobian, turned over or not, and all within so many layers; None where all are good."""
         (kind,), (tags,), (listed,) = gmsh.model.mesh.getElements(3)
         bad = np.asarray(gmsh.model.mesh.getElementQualities(tags, "minSJ")) < ENOUGH
-        if not (np.asarray(gmsh.model.mesh.getElementQualities(tags, "minDetJac")) <= 0).any():
+        if not bad.any():
             return None
         nodes = listed.reshape(len(tags), -1).astype(np.int64)
         for _ in range(LAYERS):

@@ -103,11 +103,15 @@ def export(path: Path, result: Result, options: dict[str, object], registry: Reg
     for note in _shortcomings(found):
         result.report["notes"].append(note)
         warnings.warn(note, stacklevel=2)
-    planes = f"{found['planes']} planes and " if "planes" in found else ""
+    splines = f"{found['faces'] - found.get('planes', 0)} B-spline faces"
     return (
-        f"{planes}{found['faces'] - found.get('planes', 0)} B-spline faces, at most {found['error']:.1e} of the diagonal from the surface, tangent "
+        f"{_planes(found)}{splines}, at most {found['error']:.1e} of the diagonal from the surface, tangent "
         f"planes within {found['angle']:.2f}°, {size_of(path)}"
     )
+
+
+def _planes(found: dict[str, Any]) -> str:
+    return f"{found['planes']} planes and " if "planes" in found else ""
 
 
 def _quads(path: Path, result: Result, options: dict[str, object], registry: Registry) -> dict[str, object]:
@@ -122,9 +126,14 @@ def _shortcomings(found: dict[str, Any]) -> Iterator[str]:
     """What a user should know of faces that are not as near, as smooth or as sound as they should be."""
     place = ", ".join(f"{x:.6g}" for x in found["worst"])
     if not found["reached"]:
+        why = (
+            "where the surface may have a kink itself; a larger --size helps"
+            if "planes" in found
+            else "where the surface may be pinched; try more --faces"
+        )
         yield (
             f"the faces of the file are {found['error']:.1e} of the diagonal from the surface, and neighbours meet at "
-            f"{found['angle']:.2f}° near ({place}), where the surface may be pinched; try more --faces"
+            f"{found['angle']:.2f}° near ({place}), {why}"
         )
     if not found.get("valid", True):
         yield (

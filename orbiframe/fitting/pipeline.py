@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -12,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.components.registry import Registry
-from orbiframe.errors import TopologyError
+from orbiframe.errors import Notice, TopologyError
 from orbiframe.files import gate
 from orbiframe.fitting.approximation import Approximations
 from orbiframe.fitting.closed_mesh import mapping_of
@@ -111,6 +112,9 @@ def _fitted(mesh: object, config: Config, stages: Stages, share: float, like: Co
     polyhedron = mesh if isinstance(mesh, Polyhedron) else stages("read", mesh_of, mesh, config, registry)
     surface_type = stages("topology", partial(require_closed_surface, boundary=config.boundary != "error"), polyhedron)
     require_density(config.output.refine, int((polyhedron.face_sizes - 2).sum()), config.places)
+    if polyhedron.corner_uv is not None:
+        _tell_textures_left()
+        polyhedron = replace(polyhedron, corner_uv=None)
     placed = oriented(without_unused_vertices(polyhedron))
     placed = placed if like is None else like.cut(placed)
     unit, origin, scale = _normalised(placed)
@@ -130,6 +134,11 @@ def _tessellated(surface: OrbifoldSurface, output: Output, wanted: float) -> Pol
     density = max(1, round(math.sqrt(wanted / faces))) if output.refine is None else output.refine
     mesh = surface.tessellate(density, bisected=bisected)
     return replace(mesh, corner_uv=texture_coordinates(surface, density, bisected=bisected)) if output.uv else mesh
+
+
+def _tell_textures_left() -> None:
+    told = "the texture coordinates of the mesh are not those of the surface and are left out; --uv makes new ones"
+    warnings.warn(told, Notice, stacklevel=4)
 
 
 def registry_for(config: Config) -> Registry:

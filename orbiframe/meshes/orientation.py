@@ -45,7 +45,8 @@ def reversed_faces(polyhedron: Polyhedron, flip: Bools) -> Polyhedron:
     twin = moved[polyhedron.twin[edge]]
     other = flip[polyhedron.face[np.maximum(polyhedron.twin, 0)]]
     same = (polyhedron.same ^ flipped ^ other) & (polyhedron.twin >= 0)
-    return replace(polyhedron, tail=polyhedron.tail[corner], twin=twin, same=same[edge])
+    uv = None if polyhedron.corner_uv is None else polyhedron.corner_uv[corner]
+    return replace(polyhedron, tail=polyhedron.tail[corner], twin=twin, same=same[edge], corner_uv=uv)
 
 
 def face_components(polyhedron: Polyhedron) -> tuple[int, Ints]:

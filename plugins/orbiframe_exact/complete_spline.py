@@ -59,13 +59,38 @@ def evaluate_grid(breaks: tuple[Floats, Floats], poles: Floats, s: Floats, t: Fl
 
 def bisected(breaks: Floats, wanted: Bools) -> Floats:
     """The breaks with some intervals halved, and others until neighbours differ by a factor of two at most."""
-    while wanted.any():
+    return graded(np.sort(np.concatenate([breaks, ((breaks[:-1] + breaks[1:]) / 2)[wanted]])))
+
+
+def sharing(at: Floats, weight: Floats, share: float, most: int) -> Floats:
+    """Breaks at halves of halves, so that no interval holds more than a share of the weight (n,) at parameters (n,).
+
+    An interval is halved so often at most.
+    """
+    order = np.argsort(at)
+    at, upto = at[order], np.concatenate([[0.0], np.cumsum(weight[order])])
+    breaks = np.array([0.0, 1.0])
+    for _ in range(most):
+        held = np.diff(upto[np.searchsorted(at, breaks, side="right")])
+        if not (held > share * upto[-1]).any():
+            break
+        breaks = np.sort(np.concatenate([breaks, ((breaks[:-1] + breaks[1:]) / 2)[held > share * upto[-1]]]))
+    return graded(breaks)
+
+
+def graded(breaks: Floats) -> Floats:
+    """The breaks with intervals halved until neighbours differ by a factor of two at most."""
+    while (wanted := _too_long(breaks)).any():
         breaks = np.sort(np.concatenate([breaks, ((breaks[:-1] + breaks[1:]) / 2)[wanted]]))
-        length = np.diff(breaks)
-        wanted = np.zeros(len(length), dtype=np.bool_)
-        wanted[:-1] |= length[:-1] > _RATIO * length[1:]
-        wanted[1:] |= length[1:] > _RATIO * length[:-1]
     return breaks
+
+
+def _too_long(breaks: Floats) -> Bools:
+    length = np.diff(breaks)
+    wanted = np.zeros(len(length), dtype=np.bool_)
+    wanted[:-1] |= length[:-1] > _RATIO * length[1:]
+    wanted[1:] |= length[1:] > _RATIO * length[:-1]
+    return wanted
 
 
 def holding(breaks: Floats, at: Floats) -> Bools:

@@ -20,8 +20,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
-# A region is plane if it leaves its plane by no more than this, in diagonals, and turns from it by no more degrees.
-_FLAT, _TURN = 5e-6, 0.1
+# A region is plane if it leaves its plane by no more than this share of the tolerance, and turns by no more degrees.
+_FLAT, _TURN = 0.1, 1.0
 # Planes that meet at less, as a sine, have no common line.
 _SAME_PLANE = 0.02
 # The side of a crease is told so far inside of a quadrilateral.
@@ -44,7 +44,7 @@ class OneSidedPoints(QuadPoints):
 
 class Planes(NamedTuple):
     """Plane regions: the plane of each, normal (P, 3) and offset (P,), as its triangles are seen; region: (F,), the
-    number of the plane of every triangle, -1 for those that are curved; border: (3 F,), the halfedges at which one ends.
+    number of the plane of every triangle, -1 for one that is curved; border: (3 F,), the halfedges where a plane ends.
     """
 
     normal: Floats
@@ -85,16 +85,16 @@ class CreasedDomain(QuadDomain):
         return self.smooth_edge
 
 
-def creased_domain(surface: OrbifoldSurface, diagonal: float) -> CreasedDomain:
+def creased_domain(surface: OrbifoldSurface, tolerance: float) -> CreasedDomain:
     """The faces of a surface with creases: a plane for every plane region, three quadrilaterals for other triangles.
 
-    diagonal: of its box. On a nonorientable surface no region counts as plane.
+    tolerance: of the faces, of which a plane region may use a tenth. On a nonorientable surface no region is plane.
     """
     basis = surface.basis
     assert isinstance(basis, ElementBasis)
     d = basis.domain
     points, edge, ends = _thirds(surface, d)
-    planes = _planes(points, d, _FLAT * diagonal, surface.orbifold.orientable and not d.same.any())
+    planes = _planes(points, d, _FLAT * tolerance, surface.orbifold.orientable and not d.same.any())
     curved = np.repeat(planes.region < 0, 3)
     used, number = np.unique(edge[curved], return_inverse=True)
     halves = 2 * d.edge_count
@@ -116,6 +116,7 @@ def creased_domain(surface: OrbifoldSurface, diagonal: float) -> CreasedDomain:
         d,
         group,
         True,
+        None,
         planes,
         half[:halves],
         plane[used],
@@ -195,7 +196,7 @@ def _places(points: OneSidedPoints, d: GeodesicTriangulation, planes: Planes) ->
     region = planes.region[face]
     on = np.unique(np.concatenate([np.stack([v, region], axis=1)[region >= 0] for v in own[:2]]), axis=0)
     at, first = np.unique(on[:, 0], return_index=True)
-    for vertex, mine in zip(at.tolist(), np.split(on[:, 1], first[1:]), strict=True):
+    for vertex, mine in zip(at.tolist(), np.split(on[:, 1], first)[1:], strict=True):
         lacks = planes.offset[mine] - planes.normal[mine] @ found[vertex]
         found[vertex] += np.linalg.pinv(planes.normal[mine], rcond=_SAME_PLANE / 2) @ lacks
     return found

@@ -23,7 +23,9 @@ _DIVIDED = 0.02
 
 @dataclass(frozen=True, eq=False)
 class FaceColours:
-    """rgb: (Q, 3), the colour of every group of triangles (`QuadDomain.pair`), from 0 to 1; share: (Q,), the part of its area that has this colour."""
+    """rgb: (G, 3), the colour of every group of triangles (`QuadDomain.pair`), from 0 to 1; share: (G,), the part of
+    its area that has this colour.
+    """
 
     rgb: Floats
     share: Floats

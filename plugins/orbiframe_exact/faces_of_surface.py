@@ -34,8 +34,8 @@ def fitted(surface: OrbifoldSurface, count: int | None = None, tolerance: float 
 
 def fitted_between_creases(surface: OrbifoldSurface, tolerance: float = 1e-4) -> CreasedFaces:
     """A surface with creases as planes, and B-spline faces within a tolerance relative to its box, see `fitted`."""
-    diagonal = diagonal_of(surface)
-    found = CreasedFaces(creased_domain(surface, diagonal), tolerance * diagonal)
+    absolute = tolerance * diagonal_of(surface)
+    found = CreasedFaces(creased_domain(surface, absolute), absolute)
     if found.domain.count:
         found.fit()
     return found

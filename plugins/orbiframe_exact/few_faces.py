@@ -15,15 +15,22 @@ from orbiframe_exact.complete_spline import (
     data,
     evaluate,
     evaluate_grid,
+    graded,
     holding,
     operator,
+    sharing,
 )
 from orbiframe_exact.quad_domain import QuadDomain
+from orbiframe_exact.quad_places import places_in_quads
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 _ROUNDS = 10
+# No interval holds more of the area of a face than this at first; and one is halved so often at most for that.
+_SHARE, _HALVINGS = 0.4, 40
+# A face has so many intervals in each direction at most.
+_MOST_INTERVALS = 250
 # Edges are so much nearer to the surface than faces: a coarse edge lets the angle refine the faces in vain.
 _EDGE_SHARE = 0.15
 ANGLE = 0.1  # degrees between the tangent planes of neighbours
@@ -58,6 +65,7 @@ class FewFaces:
         even = np.linspace(0, 1, self.intervals + 1)
         self.edge_breaks = [even] * len(self.domain.ends)
         self.own_breaks = [[even, even] for _ in range(self.domain.count)]
+        self._divide_limbs()
         self.sides = self.domain.sides_of_edges()
 
     def fit(self) -> None:
@@ -75,6 +83,16 @@ class FewFaces:
             faces = self._coarse_faces(sorted(faces)) | self._rough_faces()
             if not faces:
                 return
+
+    def _divide_limbs(self) -> None:
+        """Put breaks where a face holds much of the surface in a small part of its square, as a limb within it."""
+        if self.domain.into is None:
+            return
+        quad, s, t, area = places_in_quads(self.domain)
+        for q in range(self.domain.count):
+            for axis, at in enumerate((s[quad == q], t[quad == q])):
+                breaks = sharing(at, area[quad == q], _SHARE, _HALVINGS)
+                self.own_breaks[q][axis] = graded(np.union1d(self.own_breaks[q][axis], breaks))
 
     # ---- edges ------------------------------------------------------------------------------------------------------
 
@@ -199,7 +217,7 @@ class FewFaces:
         m = unit(normal - tangent * (dot(normal, tangent) / dot(tangent, tangent)))
         return curve, tangent, across - m * dot(across, m)
 
-    def _border_normals(self, quads: list[int], at: list[Floats], own: Floats) -> Floats:
+    def _border_normals(self, quads: list[int], at: list[Floats], own: Floats) -> Floats:  # noqa: ARG002
         """The normals that both faces have in common at places of the borders of faces, from those of the surface."""
         return own
 
@@ -221,7 +239,7 @@ class FewFaces:
                 gap = np.linalg.norm(evaluate_grid(breaks, poles, *grid, (0, 0)).reshape(-1, 3) - wanted, axis=1)
                 worst = gap.reshape(len(grid[0]), len(grid[1])).max(axis=1 - axis)
                 self.error[q] = max(self.error[q], float(worst.max()))
-                if (worst > self.tolerance).any():
+                if (worst > self.tolerance).any() and len(breaks[axis]) <= _MOST_INTERVALS:
                     self.own_breaks[q][axis] = bisected(breaks[axis], worst > self.tolerance)
                     found.add(q)
         return found
@@ -241,6 +259,8 @@ class FewFaces:
                 quad, k = divmod(side, 4)
                 at = self.along(side, u[angle > _ASKED])[k % 2]
                 breaks = self.faces[quad][0][k % 2]
+                if len(breaks) > _MOST_INTERVALS:
+                    continue
                 mended = bisected(breaks, holding(breaks, at))
                 self.own_breaks[quad][k % 2] = np.union1d(self.own_breaks[quad][k % 2], mended)
                 found.add(quad)
@@ -249,7 +269,7 @@ class FewFaces:
         self.worst = evaluate(self.edge_breaks[e], self.edge_poles[e], worst[[e]])[0]
         return found
 
-    def _both_normals(self, edge: int, sides: list[int], u: Floats) -> tuple[Floats, Floats]:
+    def _both_normals(self, edge: int, sides: list[int], u: Floats) -> tuple[Floats, Floats]:  # noqa: ARG002
         """The normals of both faces at an edge."""
         return self._normals(sides[0], u), self._normals(sides[1], u)
 

@@ -14,7 +14,7 @@ from scipy.sparse import coo_array
 from orbiframe import FitError, OrbifoldSurface, Points, surface_type
 from orbiframe.delaunay import delaunay_of_vertices, domain_for, vertex_points
 from orbiframe.surfaces import OpenTriangulation, border_curves, map_areas, open_triangulation
-from orbiframe.triangulations import GeodesicTriangulation
+from orbiframe.triangulations import GeodesicTriangulation, girth
 from orbiframe_exact.quad_points import QuadPoints, settled
 from orbiframe_exact.rim_sides import RimSide, rim_side
 
@@ -24,6 +24,8 @@ Bools = NDArray[np.bool_]
 
 # What a pair is worth beside its quality, so that no triangle stays alone, and the quality of one that is not convex.
 _PAIR, _NOT_CONVEX = 20.0, -5.0
+# Pairs of convex quadrilaterals only have at least this quality, also those that meet a vertex twice.
+_CONVEX = -2.0
 # Readers of CAD files may mistake a face that meets a vertex twice; it is taken where there is no other way.
 _MEETS_ITSELF = -10.0
 # What a block of the input is worth more, and the least quality of quadrilaterals between corners of blocks.
@@ -34,6 +36,8 @@ _MORE = (0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.5)
 _APART = 0.02
 # Shares that are tried at a boundary, whose corners may ask for many sides.
 _MORE_AT_RIMS = (0.0, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0, 8.0)
+# So much energy of the map's scale asks for one face more, and there are so many more at most.
+_ENERGY, _LIMBS = 5.0, 24
 _LOOK = np.linspace(0.02, 0.98, 7)
 
 
@@ -45,7 +49,8 @@ class QuadDomain:
     (Q, 4), the edge at every side; rising: (Q, 4), whether the parameter of the edge grows with s or t there; ends:
     (E, 2), the vertices where every edge begins and ends; orientable: whether all can be seen from one side; triangles:
     those that are paired, and pair: (F,), the quadrilateral of each, -1 for those beyond a boundary; closed: whether
-    there is none.
+    there is none; into: (F, 3, 3), the isometry from the frame of each triangle to that of its quadrilateral, None
+    where no points are found in them.
     """
 
     points: QuadPoints
@@ -56,6 +61,7 @@ class QuadDomain:
     triangles: GeodesicTriangulation
     pair: Ints
     closed: bool
+    into: Floats | None
 
     @property
     def count(self) -> int:
@@ -89,8 +95,14 @@ class QuadDomain:
 
 
 def default_count(surface: OrbifoldSurface) -> int:
-    """How many faces a surface has where none are asked for: 16 and 8 for each unit of |chi|."""
-    return 16 + 8 * abs(surface_type(surface.own_mesh).euler_characteristic)
+    """How many faces a surface has where none are asked for: 16, 8 for each unit of |chi|, and up to 24 for limbs.
+
+    Where the scale of the map changes a face cannot be as large: the energy of `girth` says how much it changes. With a
+    boundary it says more of what closes the surface for the map, and there are none for it.
+    """
+    inside = surface.triangulation.inside
+    limbs = 0 if inside is not None else min(round(girth(surface.triangulation).energy / _ENERGY), _LIMBS)
+    return 16 + 8 * abs(surface_type(surface.own_mesh).euler_characteristic) + limbs
 
 
 def quad_domain(surface: OrbifoldSurface, count: int, blocks: Ints | None = None) -> QuadDomain:
@@ -98,7 +110,8 @@ def quad_domain(surface: OrbifoldSurface, count: int, blocks: Ints | None = None
 
     The quality of a pair is the least sine between the two directions on the surface, or the root of the least area
     element over the greatest. Pairs that meet a vertex twice come last. Where triangles cannot be paired, or a
-    quadrilateral would be glued to itself, there are more vertices. Raises FitError where that does not help.
+    quadrilateral would be glued to itself or not be convex, there are more vertices; where none of these numbers makes
+    all convex, the best one is taken. Raises FitError where triangles cannot be paired at any.
 
     blocks: (B, 4), quadrilaterals of vertices of the input. Their corners are the vertices then, and a pair that is one
     of them is worth more; they count for nothing where a pair comes out far from square.
@@ -110,12 +123,17 @@ def quad_domain(surface: OrbifoldSurface, count: int, blocks: Ints | None = None
         if found is not None:
             return found
     chi = int(surface.orbifold.euler_characteristic)
+    best, most = None, -np.inf
     for more in _MORE:
         vertices = max(count + chi, 1) + math.ceil(more * count)
         sites = domain_for(surface.orbifold, surface.triangulation, vertices, (1, 0, 0))
-        found, _ = _paired(surface, sites)
-        if found is not None:
-            return found
+        found, quality = _paired(surface, sites)
+        if found is not None and quality > most:
+            best, most = found, quality
+        if most > _CONVEX:
+            break
+    if best is not None:
+        return best
     raise FitError(f"no {count} faces cover this surface; ask for more of them, such as --faces {2 * count}")
 
 
@@ -182,6 +200,8 @@ def _paired(
         return None, 0.0
     pair = np.full(sites.face_count, -1)
     pair[inner[chosen] // 3] = pair[sites.twin[inner[chosen]] // 3] = np.arange(len(chosen))
+    into = np.tile(np.eye(3), (sites.face_count, 1, 1))
+    into[sites.twin[inner[chosen]] // 3] = sites.gluing[inner[chosen]]
     along = ((sides == reference) | sites.same[sides]) ^ back
     weighted = corners[chosen] * _weights(surface, sites)[corner[chosen]][..., None]
     rims = () if rim is None else tuple(_rims(rim, wall, sides, corner[chosen], weighted))
@@ -194,6 +214,7 @@ def _paired(
         sites,
         pair,
         rim is None,
+        into,
     )
     return found, float((quality - twice)[chosen].min())
 

@@ -14,6 +14,8 @@ from orbiframe_exact.rim_sides import RimSide
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
+_NEWTON = 12
+
 
 @dataclass(frozen=True, eq=False)
 class QuadPoints:
@@ -56,6 +58,25 @@ class QuadPoints:
             bend = a[0] * b[0] * d[3] + (a[0] * b[1] + a[1] * b[0]) * d[4] + a[1] * b[1] * d[5]
             found.append(bend + c[0] * d[1] + c[1] * d[2])
         return found
+
+    def parameters(self, quad: Ints, x: Floats) -> tuple[Floats, Floats]:
+        """The parameters s and t, from 0 to 1, at points x (n, 3) of quadrilaterals, in the frame of each.
+
+        By Newton's steps for <e, p(s, t)> = 0 with two vectors e that are orthogonal to x.
+        """
+        least = np.eye(3)[np.abs(x).argmin(axis=1)]
+        one = np.cross(x, least)
+        one /= np.linalg.norm(one, axis=1, keepdims=True)
+        other = np.cross(x, one)
+        s, t = np.full(len(x), 0.5), np.full(len(x), 0.5)
+        for _ in range(_NEWTON):
+            p, ps, pt, _ = self._flat(quad, s, t)
+            (a, b), (c, d), (f, g) = ([np.einsum("ni,ni->n", e, v) for e in (one, other)] for v in (ps, pt, p))
+            determinant = a * d - b * c
+            step = np.where(determinant == 0, 0.0, 1 / np.where(determinant == 0, 1.0, determinant))
+            s = np.clip(s - step * (d * f - c * g), 0, 1)
+            t = np.clip(t - step * (a * g - b * f), 0, 1)
+        return s, t
 
     def _flat(self, quad: Ints, s: Floats, t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """What is projected: p, p_s, p_t and p_st."""

@@ -51,10 +51,11 @@ class Place:
     def __init__(self, surface: OrbifoldSurface, box: Floats) -> None:
         self._origin, self._scale = surface.origin, surface.scale
         placed = self.exactly(box)
-        self._decimals = _DIGITS - math.floor(math.log10(float(np.ptp(placed, axis=0).max())))
+        self._decimals = round(_DIGITS - math.log10(float(np.ptp(placed, axis=0).max())))
         self.tolerance = max(TOLERANCE, ROUNDING * float(np.abs(placed).max()), 2 * 10.0**-self._decimals)
 
     def __call__(self, points: Floats) -> Floats:
+        """The points in space, rounded."""
         return np.asarray(np.round(self.exactly(points), self._decimals))
 
     def exactly(self, points: Floats) -> Floats:

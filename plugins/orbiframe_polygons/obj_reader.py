@@ -31,25 +31,28 @@ BLANK, SLASH = 32, 47
 def read(path: Path) -> Polyhedron:
     """The polyhedron of an OBJ file: polygons, normals, and colours after the coordinates (`v x y z r g b`).
 
-    Negative indices count back from where they stand. Names, groups and texture coordinates are skipped, and no
-    material file is opened. Tags `t crease 2/1/0 v w sharpness`, as OpenSubdiv has them, mark edges as sharp. Normals
-    are kept where all corners of each vertex have the same normal; where the file has none, corners may name them
-    anyhow. Raises FormatError with the line for anything else that the format does not know, free-form curves included.
+    Negative indices count back from where they stand. Names and groups are skipped, and no material file is opened.
+    Texture coordinates are kept where every corner has some. Tags `t crease 2/1/0 v w sharpness`, as OpenSubdiv has
+    them, mark edges as sharp. Normals are kept where all corners of each vertex have the same normal; where the file
+    has none, corners may name them anyhow. Raises FormatError with the line for anything else that the format does not
+    know, free-form curves included.
 
     Source: Wavefront, Advanced Visualizer manual, appendix B1: Object files.
     """
     text = read_text(path, continued=True)
-    vertex, normal, face, tag = (_starting(text, word) for word in (b"v", b"vn", b"f", b"t"))
+    vertex, texture, normal, face, tag = (_starting(text, word) for word in (b"v", b"vt", b"vn", b"f", b"t"))
     _require_known(text, vertex | normal | face | tag)
     vertices, colors = _vertices(text.only(vertex))
-    directions = _normals(text.only(normal))
+    places, directions = _textures(text.only(texture)), _normals(text.only(normal))
     faces = text.only(face).without_keyword(1)
     if not len(faces):
         raise FormatError(f"{path}: the file holds no faces (lines that start with f)")
-    seen = [np.cumsum(kind, dtype=np.intp)[face] for kind in (vertex, normal)]
-    points, pointers = _corners(faces, (seen[0], len(vertices)), (seen[1], len(directions)))
+    seen = [np.cumsum(kind, dtype=np.intp)[face] for kind in (vertex, texture, normal)]
+    counts = len(vertices), len(places), len(directions)
+    points, place, pointers = _corners(faces, *zip(seen, counts, strict=True))
     normals = _per_vertex(points, pointers, directions, len(vertices))
     mesh = Polyhedron.from_corners(vertices, offsets_of(faces.words), points, normals=normals, colors=colors)
+    mesh = mesh if place is None else replace(mesh, corner_uv=places[place])
     return replace(mesh, marked=marks(text.only(tag), len(vertices))) if tag.any() else mesh
 
 
@@ -94,10 +97,23 @@ def _normals(text: Text) -> Floats:
     return text.numbers().reshape(-1, 3)
 
 
-def _corners(faces: Text, vertices: tuple[Ints, int], normals: tuple[Ints, int]) -> tuple[Ints, Ints | None]:
-    """The vertex of each corner and, where every corner has one, its normal.
+def _textures(text: Text) -> Floats:
+    """The first two numbers of each; a third one is a depth, and a second one that lacks is 0."""
+    text = text.without_keyword(2)
+    wrong = np.flatnonzero(~np.isin(text.words, (1, 2, 3)))
+    if len(wrong):
+        text.refuse(int(wrong[0]), f"found {text.words[wrong[0]]} numbers, but a texture coordinate has 1 to 3")
+    values = np.append(text.numbers(), 0.0)
+    second = np.where(text.words > 1, text.first + 1, len(values) - 1)
+    return np.stack([values[text.first], values[second]], axis=1)
 
-    vertices, normals: how many of them stand before each face, and in the whole file.
+
+def _corners(
+    faces: Text, vertices: tuple[Ints, int], textures: tuple[Ints, int], normals: tuple[Ints, int]
+) -> tuple[Ints, Ints | None, Ints | None]:
+    """The vertex of each corner and, where every corner has one, its texture coordinates and its normal.
+
+    vertices, textures, normals: how many of them stand before each face, and in the whole file.
     """
 
     def place(face: int) -> str:
@@ -107,9 +123,13 @@ def _corners(faces: Text, vertices: tuple[Ints, int], normals: tuple[Ints, int])
     require_sizes(sizes, place)
     values, slot = _numbers_and_slots(faces)
     points = corners(_from_zero(faces, values[slot == 0], vertices[0]), sizes, vertices[1], place)
-    if not normals[1] or (slot == 2).sum() != len(points):
-        return points, None
-    return points, corners(_from_zero(faces, values[slot == 2], normals[0]), sizes, normals[1], place, noun="normal")
+
+    def of_all(number: int, known: tuple[Ints, int], noun: str) -> Ints | None:
+        if not known[1] or (slot == number).sum() != len(points):
+            return None
+        return corners(_from_zero(faces, values[slot == number], known[0]), sizes, known[1], place, noun=noun)
+
+    return points, of_all(1, textures, "texture coordinate"), of_all(2, normals, "normal")
 
 
 def _numbers_and_slots(faces: Text) -> tuple[Floats, Ints]:

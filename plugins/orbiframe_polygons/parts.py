@@ -21,7 +21,8 @@ Ints = NDArray[np.intp]
 class Part:
     """Faces of any size with vertices of their own.
 
-    points: (V, 3); sizes: (F,); tail: the corners of all faces; normals (V, 3) and colors (V, 3 or 4) or None.
+    points: (V, 3); sizes: (F,); tail: the corners of all faces; normals (V, 3) and colors (V, 3 or 4) or None;
+    corner_uv: (H, 2), texture coordinates of all corners, or None.
     """
 
     points: Floats
@@ -29,6 +30,7 @@ class Part:
     tail: Ints
     normals: Floats | None = None
     colors: Floats | None = None
+    corner_uv: Floats | None = None
 
     def moved(self, linear: Floats, shift: Floats) -> Part:
         """The part at its place: points times the matrix (rows) plus the shift.
@@ -37,8 +39,12 @@ class Part:
         """
         points = self.points @ linear + shift
         normals = None if self.normals is None else _turned_normals(self.normals, linear)
-        tail = reversed_faces(self.sizes, self.tail) if np.linalg.slogdet(linear)[0] < 0 else self.tail
-        return replace(self, points=points, tail=tail, normals=normals)
+        moved = replace(self, points=points, normals=normals)
+        if np.linalg.slogdet(linear)[0] >= 0:
+            return moved
+        corner = reversed_faces(self.sizes, np.arange(len(self.tail)))
+        uv = None if self.corner_uv is None else self.corner_uv[corner]
+        return replace(moved, tail=self.tail[corner], corner_uv=uv)
 
     def closed(self) -> Part:
         """The part with equal points joined where it has open edges without; what disagrees at a point goes."""
@@ -46,17 +52,20 @@ class Part:
             return self
         points, place = welded(self.points[:, None])
         tables = [_agreed(table, place, len(points)) for table in (self.normals, self.colors)]
-        return Part(points, self.sizes, place[self.tail], *tables)
+        return Part(points, self.sizes, place[self.tail], *tables, self.corner_uv)
 
 
 def polyhedron_of(parts: Sequence[Part], unit: str | None = None) -> Polyhedron:
-    """All parts side by side, in a unit or in none; normals and colours where every part has them."""
+    """All parts side by side, in a unit or in none; normals, colours and textures where every part has them."""
     starts = offsets_of(np.array([len(part.points) for part in parts], dtype=np.intp))
     tail = np.concatenate([part.tail + start for part, start in zip(parts, starts[:-1], strict=True)])
     sizes = np.concatenate([part.sizes for part in parts])
-    normals, colors = (_stacked([getattr(part, name) for part in parts]) for name in ("normals", "colors"))
+    normals, colors, uv = (
+        _stacked([getattr(part, name) for part in parts]) for name in ("normals", "colors", "corner_uv")
+    )
     points = np.concatenate([part.points for part in parts])
-    return Polyhedron.from_corners(points, offsets_of(sizes), tail, normals=normals, colors=colors, unit=unit)
+    mesh = Polyhedron.from_corners(points, offsets_of(sizes), tail, normals=normals, colors=colors, unit=unit)
+    return mesh if uv is None else replace(mesh, corner_uv=uv)
 
 
 def reversed_faces(sizes: Ints, tail: Ints) -> Ints:

@@ -21,15 +21,21 @@ def test_the_summary_and_the_report_say_what_was_kept(orbiframe, tmp_path):
 
 
 @pytest.mark.long
-def test_cad_files_hold_the_exact_patches(orbiframe, tmp_path):
+def test_cad_files_have_creases_as_edges_of_a_few_faces(orbiframe, tmp_path):
     pytest.importorskip("OCP", reason='Open CASCADE is the extra "orbiframe[cad]"')
-    ran = orbiframe("fit", CUBE, "-o", tmp_path / "cube.step", *QUICK)
+    ran = orbiframe("fit", CUBE, "-o", tmp_path / "cube.step", *QUICK, "--export-tolerance", 1e-3, "--json")
     assert ran.status == 0
-    assert "exact rational patches" in ran.out
+    found = json.loads(ran.out)["export"]
+    assert (found["planes"], found["faces"], found["valid"]) == (6, 6, True)
+    exact = orbiframe("fit", CUBE, "-o", tmp_path / "exact.step", *QUICK, "--exact")
+    assert "exact rational patches" in exact.out
     few = orbiframe("fit", CUBE, "-o", tmp_path / "few.step", *QUICK, "--faces", 20)
     assert few.status == 2
-    assert "few faces round creases off; write the exact patches" in few.err
+    assert "creases decide how many faces there are" in few.err
     assert not (tmp_path / "few.step").exists()
+    patches = orbiframe("fit", CUBE, "-o", tmp_path / "patches.xml", *QUICK)
+    assert patches.status == 2
+    assert "patches round creases off" in patches.err
 
 
 @pytest.mark.long

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from late import Late
 
-from orbiframe import Polyhedron
+from orbiframe import Notice, Polyhedron, fit
 from orbiframe.files import read, write
+from orbiframe.meshes import reversed_faces
 
 trimesh = Late("trimesh")
 
@@ -90,3 +91,36 @@ def test_mirrored_rows_of_gltf_are_seen_by_another_reader(tmp_path):
     accessor = tree["accessors"][tree["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"]]
     assert (accessor["type"], accessor["componentType"]) == ("VEC2", 5126)
     assert tree["meshes"][0]["primitives"][0]["material"] == 0
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".glb", ".gltf"])
+def test_texture_coordinates_are_read_again(tmp_path, suffix):
+    mesh = triangles()
+    write(path := tmp_path / f"cube{suffix}", mesh)
+    again = read(path)
+    assert told(again.vertices[again.tail], again.corner_uv) == told(mesh.vertices[mesh.tail], mesh.corner_uv)
+
+
+def test_faces_that_are_turned_take_their_texture_along():
+    mesh = cube()
+    turned = reversed_faces(mesh, np.array([True, False, True, False, False, False]))
+    assert told(turned.vertices[turned.tail], turned.corner_uv) == told(mesh.vertices[mesh.tail], mesh.corner_uv)
+
+
+def test_an_obj_file_of_which_some_corners_have_no_texture_has_none(tmp_path):
+    lines = ["v 0 0 0", "v 1 0 0", "v 0 1 0", "v 0 0 1", "vt 0.5", "f 1/1 3/1 2/1", "f 1 2 4", "f 2 3 4", "f 3 1 4"]
+    (path := tmp_path / "a.obj").write_text("\n".join(lines))
+    assert read(path).corner_uv is None
+    path.write_text(
+        "\n".join(lines)
+        .replace("f 1 2 4", "f 1/-1 2/1 4/1")
+        .replace("2 3 4", "2/1 3/1 4/1")
+        .replace("3 1 4", "3/1 1/1 4/1")
+    )
+    assert np.array_equal(read(path).corner_uv, np.tile([0.5, 0.0], (12, 1)))
+
+
+def test_a_fit_says_that_it_leaves_them_out():
+    with pytest.warns(Notice, match="--uv makes new ones"):
+        result = fit(triangles(), size=30, fast=True, refine=1)
+    assert result.output.corner_uv is None

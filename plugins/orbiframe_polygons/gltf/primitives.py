@@ -53,10 +53,14 @@ def _part(primitive: Node, kind: int, accessors: Accessors, weights: Floats, *, 
         primitive.refuse("the primitive has no POSITION")
     normals = _table(attributes, "NORMAL", accessors, ("VEC3",), "if" if quantized else "f", len(points))
     colors = _table(attributes, "COLOR_0", accessors, ("VEC3", "VEC4"), "uf", len(points))
+    texture = _table(attributes, "TEXCOORD_0", accessors, ("VEC2",), "uf", len(points))
     points, normals = _morphed(primitive, accessors, weights, types, points, normals)
     triangles = _triangles(primitive, kind, accessors, len(points))
     sizes = np.full(len(triangles), 3, dtype=np.intp)
-    return Part(points, sizes, triangles.ravel(), normals, None if colors is None else np.clip(colors, 0, 1))
+    corners = triangles.ravel()
+    # Textures of glTF count from the upper left corner down.
+    uv = None if texture is None else texture[corners] * (1, -1) + (0, 1)
+    return Part(points, sizes, corners, normals, None if colors is None else np.clip(colors, 0, 1), uv)
 
 
 def _require_uncompressed(primitive: Node, attributes: Node, accessors: Accessors) -> None:

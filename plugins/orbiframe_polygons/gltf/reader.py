@@ -89,7 +89,7 @@ def _at_place(placed: Placed, shape: Shape) -> Part:
     """All triangles of a mesh as one part, at its place."""
     parts = with_colours_of_all(shape.parts)
     whole = polyhedron_of(parts)
-    part = Part(whole.vertices, whole.face_sizes, whole.tail, whole.normals, whole.colors)
+    part = Part(whole.vertices, whole.face_sizes, whole.tail, whole.normals, whole.colors, whole.corner_uv)
     with np.errstate(over="ignore", invalid="ignore"):
         moved = part.moved(placed.matrix[:3, :3], placed.matrix[3, :3])
     if not np.isfinite(moved.points).all():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
-from orbiframe_exact.complete_spline import abscissae, bisected, data, evaluate, holding, operator
+from orbiframe_exact.complete_spline import abscissae, bisected, data, evaluate, holding, operator, sharing
 
 UNEVEN = np.array([0, 0.125, 0.25, 0.5, 1])
 
@@ -49,3 +49,18 @@ def test_neighbours_differ_by_a_factor_of_two_at_most(places):
 
 def test_intervals_that_hold_parameters():
     assert holding(UNEVEN, np.array([0.0, 0.2, 1.0])).tolist() == [True, True, False, True]
+
+
+def test_no_interval_holds_more_than_its_share_and_neighbours_differ_by_two_at_most():
+    """Half of the weight within a millionth of the interval, and the rest all over."""
+    rng = np.random.default_rng(2)
+    at = np.concatenate([0.3 + 1e-6 * rng.random(500), rng.random(500)])
+    weight = rng.random(1000)
+    breaks = sharing(at, weight, 0.2, 40)
+    held = np.histogram(at, breaks, weights=weight)[0]
+    assert held.max() <= 0.2 * weight.sum()
+    ratio = np.diff(breaks)[1:] / np.diff(breaks)[:-1]
+    assert ratio.max() < 2.02
+    assert ratio.min() > 0.49
+    assert len(breaks) < 100
+    assert len(sharing(np.full(5, 0.3), np.ones(5), 0.2, 7)) <= 2 * 7 + 10

@@ -13,9 +13,12 @@ from orbiframe_exact.complete_spline import evaluate, evaluate_grid
 from orbiframe_exact.faces_of_surface import described, fitted
 from orbiframe_exact.few_faces import FewFaces
 from orbiframe_exact.quad_domain import _matching, default_count, quad_domain
+from orbiframe_exact.quad_places import places_in_quads
+from scipy.spatial import cKDTree
 
 from orbiframe import Points, read
 from orbiframe.meshes import blocks_near
+from orbiframe.triangulations import girth
 
 opened, shared_edges, open_cascade = (
     Late("opened_shapes", needs="OCP.gp"),
@@ -206,4 +209,50 @@ def test_a_tolerance_and_a_number_are_kept():
         assert max(found.error.values()) <= tolerance * diagonal(surface) * (1 + 1e-9)
     poles = [sum(p.size for _, p in found.faces.values()) for found in (coarse, fine)]
     assert poles[0] < poles[1]
-    assert default_count(surface) == 16
+
+
+def test_limbs_ask_for_more_faces():
+    torus, plate = (fit_of(name).surface for name in ("torus.off", "plate_genus2_coarse.off"))
+    energy = girth(torus.triangulation).energy
+    assert 5 < energy < 20
+    assert default_count(torus) == 16 + round(energy / 5)
+    assert 32 <= default_count(plate) <= 32 + 24
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_parameters_are_found_again(name):
+    points = quad_domain(fit_of(name).surface, 20).points
+    rng = np.random.default_rng(4)
+    quad, (s, t) = rng.integers(0, len(points.corners), 60), rng.random((2, 60))
+    corners = points.corners[quad]
+    weights = np.stack([(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t], axis=1)
+    x = 3 * np.einsum("nk,nki->ni", weights, corners)
+    assert np.abs(np.stack(points.parameters(quad, x)) - (s, t)).max() < 1e-9
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_vertices_are_found_in_the_faces(name):
+    surface = fit_of(name).surface
+    domain = quad_domain(surface, 20)
+    quad, s, t, area = places_in_quads(domain)
+    there = domain.points.jets(quad, s, t, 0)[0]
+    own = surface.basis.values(surface.vertex_points, surface.coefficients)
+    gap, vertex = cKDTree(own).query(there)
+    assert gap.max() < 1e-8
+    assert np.sort(vertex).tolist() == list(range(len(own)))
+    mesh = surface.triangulation.polyhedron
+    a, b, c = np.moveaxis(mesh.vertices[mesh.triangles], 1, 0)
+    assert area.sum() == pytest.approx(3 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+
+
+def test_domains_that_are_not_convex_are_passed_over(monkeypatch):
+    surface, tried = fit_of("torus.off").surface, []
+    real = quad_domain_module._paired
+
+    def worse(*given):
+        tried.append(real(*given)[0])
+        return tried[-1], (-5.0, -4.0, 0.1)[len(tried) - 1]
+
+    monkeypatch.setattr(quad_domain_module, "_paired", worse)
+    assert quad_domain(surface, 20) is tried[2]
+    assert len(tried) == 3
