@@ -17,12 +17,15 @@ Floats = NDArray[np.float64]
 _WIDTH, _LEAST, _MORE = 0.05, 0.25, 1.5
 
 
-def density_beyond(triangulation: Triangulation) -> Floats:
-    """How many functions per length there should be at the vertices of a mesh with a boundary, (V,): 1 far within."""
+def density_beyond(triangulation: Triangulation, *, doubled: bool = False) -> Floats:
+    """How many functions per length there should be at the vertices of a mesh with a boundary, (V,): 1 far within.
+
+    doubled: a second copy of the mesh lies beyond, so that functions lie alike on both sides of the boundary.
+    """
     mesh, border = triangulation.polyhedron, triangulation.border
     area = np.linalg.norm(vector_areas(mesh), axis=1)[triangulation.own_faces].sum()
     away = dijkstra_forest(edge_graph(mesh, mesh.edge_lengths), np.unique(mesh.tail[border])).distance
     width = _WIDTH * float(np.sqrt(area))
-    near = 1 + (_MORE - 1) * np.exp(-((away / width) ** 2))
+    near = 1 + (0.0 if doubled else _MORE - 1) * np.exp(-((away / width) ** 2))
     away[np.unique(mesh.triangles[triangulation.own_faces])] = 0
     return np.asarray(near * np.maximum(1 / (1 + np.maximum(away / width - 1, 0)), _LEAST))
