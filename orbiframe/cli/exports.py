@@ -28,10 +28,11 @@ def export_options(args: argparse.Namespace, config: Config, registry: Registry)
     if known is None:
         return None
     options: dict[str, object] = {"unit": args.unit or "mm", "name": args.mesh.stem}
-    asked = args.faces is not None or args.export_tolerance is not None
-    if "faces" in known and not args.exact and (config.data.creases is None or asked or "exact" not in known):
-        if config.data.creases is not None:
-            raise UsageError("few faces round creases off; write the exact patches, to part.step with --exact")
+    if "faces" in known and not args.exact:
+        if config.data.creases is not None and "exact" not in known:
+            raise UsageError(f"{args.output}: patches round creases off; write part.step, or leave --creases out")
+        if config.data.creases is not None and args.faces is not None:
+            raise UsageError("creases decide how many faces there are; leave --faces out")
         options |= {"exact": False, "conforming": args.conforming, **_faces(args)}
     elif not _piecewise(config, registry):
         return None
@@ -102,8 +103,9 @@ def export(path: Path, result: Result, options: dict[str, object], registry: Reg
     for note in _shortcomings(found):
         result.report["notes"].append(note)
         warnings.warn(note, stacklevel=2)
+    planes = f"{found['planes']} planes and " if "planes" in found else ""
     return (
-        f"{found['faces']} B-spline faces, at most {found['error']:.1e} of the diagonal from the surface, tangent "
+        f"{planes}{found['faces'] - found.get('planes', 0)} B-spline faces, at most {found['error']:.1e} of the diagonal from the surface, tangent "
         f"planes within {found['angle']:.2f}°, {size_of(path)}"
     )
 

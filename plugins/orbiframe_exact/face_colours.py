@@ -23,7 +23,7 @@ _DIVIDED = 0.02
 
 @dataclass(frozen=True, eq=False)
 class FaceColours:
-    """rgb: (Q, 3), the colour of every face, from 0 to 1; share: (Q,), the part of its area that has this colour."""
+    """rgb: (Q, 3), the colour of every group of triangles (`QuadDomain.pair`), from 0 to 1; share: (Q,), the part of its area that has this colour."""
 
     rgb: Floats
     share: Floats
@@ -44,12 +44,13 @@ def face_colours(surface: OrbifoldSurface, domain: QuadDomain) -> FaceColours | 
     if table is None:
         return None
     colours, which = np.unique(table, axis=0, return_inverse=True)
-    face, barycentric, area = _places(surface, domain.count)
+    groups = int(domain.pair.max()) + 1
+    face, barycentric, area = _places(surface, groups)
     found = Locator(domain.triangles).locate(surface.points(face, barycentric))
-    votes = np.zeros((domain.count, len(colours)))
-    quad = domain.pair[found.face]
-    own = quad >= 0
-    np.add.at(votes, (quad[own], which.ravel()[face[found.order[own]]]), area[found.order[own]])
+    votes = np.zeros((groups, len(colours)))
+    group = domain.pair[found.face]
+    own = group >= 0
+    np.add.at(votes, (group[own], which.ravel()[face[found.order[own]]]), area[found.order[own]])
     return FaceColours(colours[votes.argmax(axis=1)], votes.max(axis=1) / np.maximum(votes.sum(axis=1), _tiny()))
 
 

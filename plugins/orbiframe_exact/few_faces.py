@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,7 @@ from orbiframe_exact.quad_domain import QuadDomain
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-_INTERVALS, _ROUNDS = 4, 10
+_ROUNDS = 10
 # Edges are so much nearer to the surface than faces: a coarse edge lets the angle refine the faces in vain.
 _EDGE_SHARE = 0.15
 ANGLE = 0.1  # degrees between the tangent planes of neighbours
@@ -50,9 +51,11 @@ class FewFaces:
     angle: Floats = field(default_factory=lambda: np.zeros(0))
     worst: Floats = field(default_factory=lambda: np.zeros(3))
 
+    intervals: ClassVar[int] = 4
+
     def __post_init__(self) -> None:
-        """Begin with four intervals everywhere."""
-        even = np.linspace(0, 1, _INTERVALS + 1)
+        """Begin with few intervals everywhere."""
+        even = np.linspace(0, 1, self.intervals + 1)
         self.edge_breaks = [even] * len(self.domain.ends)
         self.own_breaks = [[even, even] for _ in range(self.domain.count)]
         self.sides = self.domain.sides_of_edges()
@@ -138,11 +141,13 @@ class FewFaces:
         flat = [u for rim in rims for u in rim]
         places = [_border(k % 4, u) for k, u in enumerate(flat)]
         all_s, all_t = (np.concatenate([place[i] for place in places]) for i in (0, 1))
-        border = [_split(found, flat) for found in self.domain.points.jets(quad, all_s, all_t, 1)]
+        jets = self.domain.points.jets(quad, all_s, all_t, 1)
+        normal = _split(self._border_normals(quads, flat, unit(np.cross(jets[1], jets[2]))), flat)
+        border = [_split(found, flat) for found in jets]
         corner = np.tile([0.0, 1, 1, 0], len(quads)), np.tile([0.0, 0, 1, 1], len(quads))
         twists = self.domain.points.jets(np.repeat(quads, 4), *corner, 2)[3].reshape(-1, 4, 3)
         for n, q in enumerate(quads):
-            four = [(border[1][4 * n + k], border[2][4 * n + k]) for k in range(4)]
+            four = [(border[2 - k % 2][4 * n + k], normal[4 * n + k]) for k in range(4)]
             self.faces[q] = breaks[n], self._face(q, breaks[n], inside[n], four, twists[n])
 
     def _on_grids(self, quads: list[int], at: list[tuple[Floats, Floats]]) -> Floats:
@@ -190,10 +195,13 @@ class FewFaces:
         u = abscissae(breaks) if rising else 1 - abscissae(breaks)
         curve, tangent = (evaluate(self.edge_breaks[edge], self.edge_poles[edge], u, nu) for nu in (0, 1))
         tangent = tangent if rising else -tangent
-        normal = _unit(np.cross(*border))
-        m = _unit(normal - tangent * (_dot(normal, tangent) / _dot(tangent, tangent)))
-        across = border[1 - k % 2]
-        return curve, tangent, across - m * _dot(across, m)
+        across, normal = border
+        m = unit(normal - tangent * (dot(normal, tangent) / dot(tangent, tangent)))
+        return curve, tangent, across - m * dot(across, m)
+
+    def _border_normals(self, quads: list[int], at: list[Floats], own: Floats) -> Floats:
+        """The normals that both faces have in common at places of the borders of faces, from those of the surface."""
+        return own
 
     def _coarse_faces(self, quads: list[int]) -> set[int]:
         """The faces that are too far from the surface; the intervals where they are are halved."""
@@ -220,14 +228,15 @@ class FewFaces:
 
     def _rough_faces(self) -> set[int]:
         """Faces whose tangent planes differ from those of a neighbour; the intervals along the edge are halved."""
-        found, angles, worst = set(), np.zeros(len(self.sides)), []
-        for e, sides in enumerate(self.sides.tolist()):
+        found, angles, worst = set(), np.zeros(len(self.sides)), np.full(len(self.sides), 0.5)
+        for e in np.flatnonzero(self.domain.smooth).tolist():
+            sides = [side for side in self.sides[e].tolist() if side >= 0]
             u = _within(np.unique(np.concatenate([self._along_edge(side) for side in sides])))
-            one, other = (self._normals(side, u) for side in sides)
-            sine, cosine = np.linalg.norm(np.cross(one, other), axis=1), np.abs(_dot(one, other))[:, 0]
+            one, other = self._both_normals(e, sides, u)
+            sine, cosine = np.linalg.norm(np.cross(one, other), axis=1), np.abs(dot(one, other))[:, 0]
             angle = np.degrees(np.arctan2(sine, cosine))
             angles[e] = angle.max()
-            worst.append(u[angle.argmax()])
+            worst[e] = u[angle.argmax()]
             for side in sides if angle.max() > _ASKED else ():
                 quad, k = divmod(side, 4)
                 at = self.along(side, u[angle > _ASKED])[k % 2]
@@ -237,8 +246,12 @@ class FewFaces:
                 found.add(quad)
         self.angle = angles
         e = int(angles.argmax())
-        self.worst = evaluate(self.edge_breaks[e], self.edge_poles[e], np.array([worst[e]]))[0]
+        self.worst = evaluate(self.edge_breaks[e], self.edge_poles[e], worst[[e]])[0]
         return found
+
+    def _both_normals(self, edge: int, sides: list[int], u: Floats) -> tuple[Floats, Floats]:
+        """The normals of both faces at an edge."""
+        return self._normals(sides[0], u), self._normals(sides[1], u)
 
     def _along_edge(self, side: int) -> Floats:
         """The breaks of a face along a side, as parameters of the edge."""
@@ -251,7 +264,7 @@ class FewFaces:
         grid = (s, t[:1]) if side % 2 == 0 else (s[:1], t)
         breaks, poles = self.faces[side // 4]
         d = [evaluate_grid(breaks, poles, *grid, nu).reshape(-1, 3) for nu in ((1, 0), (0, 1))]
-        return _unit(np.cross(d[0], d[1]))
+        return unit(np.cross(d[0], d[1]))
 
 
 # ---- small things ---------------------------------------------------------------------------------------------------
@@ -282,10 +295,12 @@ def _solved(operators: list[Floats], left: Floats) -> Floats:
     return np.swapaxes(np.linalg.solve(operators[1][1:-1, 1:-1], turned).reshape(columns, rows, 3), 0, 1)
 
 
-def _dot(a: Floats, b: Floats) -> Floats:
+def dot(a: Floats, b: Floats) -> Floats:
+    """The scalar products of vectors (n, 3), (n, 1)."""
     return np.asarray(np.einsum("ni,ni->n", a, b)[:, None])
 
 
-def _unit(vectors: Floats) -> Floats:
+def unit(vectors: Floats) -> Floats:
+    """Vectors (n, 3) over their lengths."""
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
     return np.asarray(vectors / np.maximum(length, np.finfo(float).tiny))

@@ -30,8 +30,10 @@ from OCP.TCollection import TCollection_HAsciiString
 from orbiframe import FitError, Notice, OrbifoldSurface, __version__
 from orbiframe.surfaces import PeriodicPatch, patches_of
 from orbiframe_exact.coloured_document import document_of
+from orbiframe_exact.creased_faces import CreasedFaces
+from orbiframe_exact.creased_shapes import creased_shape
 from orbiframe_exact.face_colours import face_colours
-from orbiframe_exact.faces_of_surface import Quads, described, fitted
+from orbiframe_exact.faces_of_surface import Quads, described, fitted, fitted_between_creases
 from orbiframe_exact.shapes import shape_of
 from orbiframe_exact.spline_shapes import spline_shape
 from orbiframe_exact.step_text import shorter
@@ -137,14 +139,14 @@ def _made(surface: OrbifoldSurface, exact: bool, faces: int, tolerance: float, q
     if exact:
         patches = patches_of(surface)
         return _Made(shape_of(patches), None, {}, isinstance(patches, PeriodicPatch))
-    if surface.triangulation.crease is not None:
-        raise FitError("a few faces would round the creases of the surface off; write its exact patches (exact=True)")
-    few = fitted(surface, faces or None, tolerance, quads)
+    creased = surface.triangulation.crease is not None
+    few = fitted_between_creases(surface, tolerance) if creased else fitted(surface, faces or None, tolerance, quads)
     numbers, found = described(few, surface, tolerance), face_colours(surface, few.domain)
     if found is not None:
         numbers["divided"] = found.divided
     seamed = bool(few.domain.meets_itself.any())
-    return _Made(spline_shape(few, surface), None if found is None else found.rgb, numbers, seamed)
+    shape = creased_shape(few, surface) if isinstance(few, CreasedFaces) else spline_shape(few, surface)
+    return _Made(shape, None if found is None else found.rgb[few.domain.group_of_faces], numbers, seamed)
 
 
 def _sound(reader: Any, path: Path) -> bool:

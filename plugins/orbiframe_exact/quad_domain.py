@@ -55,7 +55,7 @@ class QuadDomain:
     orientable: bool
     triangles: GeodesicTriangulation
     pair: Ints
-    closed: bool = True
+    closed: bool
 
     @property
     def count(self) -> int:
@@ -69,10 +69,23 @@ class QuadDomain:
         return _has_twins(self.ends[self.edge, first])
 
     def sides_of_edges(self) -> Ints:
-        """The two sides 4 q + k at every edge, (E, 2); at a boundary the one side twice."""
+        """The two sides 4 q + k at every edge, (E, 2); -1 for one that is not there."""
         order = np.argsort(self.edge.ravel(), kind="stable")
-        _, first, number = np.unique(self.edge.ravel()[order], return_index=True, return_counts=True)
-        return np.stack([order[first], order[first + number - 1]], axis=1)
+        edge = self.edge.ravel()[order]
+        first = np.searchsorted(edge, np.arange(len(self.ends)))
+        found = np.full((len(self.ends), 2), -1)
+        found[edge, np.arange(len(edge)) - first[edge]] = order
+        return found
+
+    @property
+    def group_of_faces(self) -> Ints:
+        """What `pair` says of the triangles under every face of a file, in the order of the faces."""
+        return np.arange(self.count)
+
+    @property
+    def smooth(self) -> Bools:
+        """The edges at which two faces are to have common tangent planes, (E,): all but those at a boundary."""
+        return np.asarray(self.sides_of_edges()[:, 1] >= 0)
 
 
 def default_count(surface: OrbifoldSurface) -> int:

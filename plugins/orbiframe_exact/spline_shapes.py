@@ -36,51 +36,63 @@ _DIGITS = 9
 
 def spline_shape(found: FewFaces, surface: OrbifoldSurface) -> Any:
     """A shell of B-spline faces in their place in space; a solid that looks outward where there is an inside."""
-    place = _Place(found, surface)
-    edges = _edges(found, place)
-    faces = [_face(found, q, place, edges) for q in range(found.domain.count)]
+    place = Place(surface, np.concatenate(list(found.edge_poles.values())))
+    edges = spline_edges(found, place, {})
+    faces = [spline_face(found, q, place, edges) for q in range(found.domain.count)]
     solid = found.domain.orientable and found.domain.closed
     if solid and _volume(found) < 0:
         faces = [face.Reversed() for face in faces]
     return joined(faces, closed=found.domain.closed, solid=solid)
 
 
-class _Place:
-    """Control points in space, rounded, and the tolerance of Open CASCADE for them."""
+class Place:
+    """Points in space, rounded, and the tolerance of Open CASCADE for them; box: points of a surface, (n, 3)."""
 
-    def __init__(self, found: FewFaces, surface: OrbifoldSurface) -> None:
+    def __init__(self, surface: OrbifoldSurface, box: Floats) -> None:
         self._origin, self._scale = surface.origin, surface.scale
-        box = np.concatenate([self._placed(poles) for poles in found.edge_poles.values()])
-        self._decimals = _DIGITS - math.floor(math.log10(float(np.ptp(box, axis=0).max())))
-        self.tolerance = max(TOLERANCE, ROUNDING * float(np.abs(box).max()))
+        placed = self.exactly(box)
+        self._decimals = _DIGITS - math.floor(math.log10(float(np.ptp(placed, axis=0).max())))
+        self.tolerance = max(TOLERANCE, ROUNDING * float(np.abs(placed).max()), 2 * 10.0**-self._decimals)
 
-    def __call__(self, poles: Floats) -> Floats:
-        return np.asarray(np.round(self._placed(poles), self._decimals))
+    def __call__(self, points: Floats) -> Floats:
+        return np.asarray(np.round(self.exactly(points), self._decimals))
 
-    def _placed(self, poles: Floats) -> Floats:
-        return np.asarray(self._origin + self._scale * poles)
+    def exactly(self, points: Floats) -> Floats:
+        """The points, not rounded."""
+        return np.asarray(self._origin + self._scale * points)
 
 
-def _edges(found: FewFaces, place: _Place) -> list[Any]:
-    builder, vertices = BRep_Builder(), {}
-    for ends, poles in zip(found.domain.ends.tolist(), _in_order(found.edge_poles), strict=True):
-        for vertex, pole in zip(ends, (poles[0], poles[-1]), strict=True):
-            if vertex not in vertices:
-                vertices[vertex] = TopoDS_Vertex()
-                builder.MakeVertex(vertices[vertex], point_of(place(pole)), place.tolerance)
+def vertex_at(vertices: dict[int, Any], number: int, point: Floats, place: Place) -> Any:
+    """The vertex of this number, made at a point of the surface if it is not there yet."""
+    if number not in vertices:
+        vertices[number] = TopoDS_Vertex()
+        BRep_Builder().MakeVertex(vertices[number], point_of(place(point)), place.tolerance)
+    return vertices[number]
+
+
+def edge_between(curve: Any, ends: tuple[Any, Any], length: float, tolerance: float) -> Any:
+    """An edge on a curve from parameter 0 to its length, between two vertices."""
+    builder, edge = BRep_Builder(), TopoDS_Edge()
+    builder.MakeEdge(edge, curve, tolerance)
+    builder.Add(edge, ends[0].Oriented(TopAbs_FORWARD))
+    builder.Add(edge, ends[1].Oriented(TopAbs_REVERSED))
+    builder.Range(edge, 0.0, length)
+    return edge
+
+
+def spline_edges(found: FewFaces, place: Place, vertices: dict[int, Any]) -> list[Any]:
+    """The edges of B-spline faces, between vertices that are made where they are not there yet."""
     made = []
-    for e, (start, end) in enumerate(found.domain.ends.tolist()):
-        points, breaks, edge = place(found.edge_poles[e]), found.edge_breaks[e], TopoDS_Edge()
-        curve = Geom_BSplineCurve(pole_row(points), number_row(breaks), integer_row(_times(breaks)), DEGREE)
-        builder.MakeEdge(edge, curve, place.tolerance)
-        builder.Add(edge, vertices[start].Oriented(TopAbs_FORWARD))
-        builder.Add(edge, vertices[end].Oriented(TopAbs_REVERSED))
-        builder.Range(edge, 0.0, 1.0)
-        made.append(edge)
+    for e, numbers in enumerate(found.domain.ends.tolist()):
+        poles, breaks = found.edge_poles[e], found.edge_breaks[e]
+        start, end = (vertex_at(vertices, v, pole, place) for v, pole in zip(numbers, poles[[0, -1]], strict=True))
+        curve = Geom_BSplineCurve(pole_row(place(poles)), number_row(breaks), integer_row(_times(breaks)), DEGREE)
+        made.append(edge_between(curve, (start, end), 1.0, place.tolerance))
     return made
 
 
-def _face(found: FewFaces, quad: int, place: _Place, edges: list[Any]) -> Any:
+def spline_face(found: FewFaces, quad: int, place: Place, edges: list[Any]) -> Any:
+    """A B-spline face between its four edges."""
     builder, face, wire = BRep_Builder(), TopoDS_Face(), TopoDS_Wire()
     breaks, poles = found.faces[quad]
     rows = [number_row(b) for b in breaks] + [integer_row(_times(b)) for b in breaks]
@@ -101,10 +113,6 @@ def _times(breaks: Floats) -> NDArray[np.intp]:
     times = np.ones(len(breaks), dtype=np.intp)
     times[[0, -1]] = DEGREE + 1
     return times
-
-
-def _in_order(poles: dict[int, Floats]) -> list[Floats]:
-    return [poles[e] for e in range(len(poles))]
 
 
 def _volume(found: FewFaces) -> float:
