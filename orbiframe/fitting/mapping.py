@@ -246,7 +246,7 @@ class Mapping:
             return triangulation
         marks = np.repeat(self.inside.astype(float), 3).reshape(-1, 3, 1)
         marked = replace(triangulation, inside=refinement.spread(marks)[:, 0, 0] > 0.5)
-        return replace(marked, density=density_beyond(marked))
+        return replace(marked, density=density_beyond(marked, doubled=self.closing == "double"))
 
     def _geometry(self) -> Geometry:
         """The plane that the configuration names, or that of the Euler characteristic."""

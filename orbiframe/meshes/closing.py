@@ -31,7 +31,7 @@ _RINGS = 2
 # must not cross in it.
 _ROUNDS, _MOST_ROUNDS = 2, 200
 # A collar in a hole ends at this share of its radius; a step of so much of the radius tells what lies in a hole.
-_OF_HOLE, _TRIED = 0.35, 0.1
+_OF_HOLE, _TRIED = 0.7, 0.1
 # A ring of no more vertices is joined to the middle; a larger one to a ring of half as many.
 _FEW = 8
 
