@@ -109,8 +109,8 @@ def page(found: list[Found]) -> str:
     return (
         f"# Speed, beside others\n\nProcessor time of one core of {machine()}, Python {platform.python_version()},\n"
         f"the least of {_TRIALS} trials that take turns, fewer where they are long, with all code loaded; made by\n"
-        "`python benchmarks/claims.py --page`, which fails where a ratio is less than what is claimed. Below 1 a peer is\n"
-        "faster, and the claim is by how much at most.\n\n" + "\n".join(table(found)) + "\n"
+        "`python benchmarks/claims.py --page`, which fails where a ratio is less than what is claimed. Below 1 a peer\n"
+        "is faster, and the claim is by how much at most.\n\n" + "\n".join(table(found)) + "\n"
     )
 
 
