@@ -8,7 +8,8 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from types import UnionType
+from typing import Any, Literal, get_args, get_origin
 
 from orbiframe.components.shown_text import shown
 from orbiframe.components.suggestion import did_you_mean
@@ -85,9 +86,11 @@ def require_known(key: str, known: Mapping[str, object], table: str, places: Map
 
 def checked_value(annotation: Any, value: object, key: str, places: Mapping[str, str]) -> Any:
     """The value as the type that the annotation asks for; raises ConfigError where it is of another type."""
+    _require_small(value, key, places)
+    if _is_plainly(annotation, value):
+        return value
     from pydantic import ValidationError
 
-    _require_small(value, key, places)
     try:
         # TOML has the types of JSON, where a tuple is a list; strict, so that "3" is no number and 1 no truth value.
         return _adapter(annotation).validate_json(json.dumps(value, default=str), strict=True)
@@ -98,6 +101,14 @@ def checked_value(annotation: Any, value: object, key: str, places: Mapping[str,
         others = [text.removeprefix(_SHOULD_BE) for place, text in found[1:] if place == inner and text != first]
         reason = " or ".join([first[0].lower() + first[1:], *dict.fromkeys(others)])
         raise ConfigError(f"{place_of(key, places)}{key}{inner} = {shown(repr(value), 200)}: {reason}") from error
+
+
+def _is_plainly(annotation: Any, value: object) -> bool:
+    """Whether a value is of a type without any question, so that pydantic, which takes long to import, is not asked."""
+    kinds = get_args(annotation) if isinstance(annotation, UnionType) else (annotation,)
+    if type(value) in kinds:
+        return value.isascii() if isinstance(value, str) else value is None or isinstance(value, bool | int | float)
+    return isinstance(value, str) and any(get_origin(kind) is Literal and value in get_args(kind) for kind in kinds)
 
 
 def _place_inside(steps: Sequence[int | str]) -> str:

@@ -161,7 +161,7 @@ class Config:
         places = dict(places or {})
         for table in tables:
             require_table(table, (*TABLES, "plugins"), places)
-        files = checked_value(tuple[str, ...], tables.get("plugins", []), "plugins", places)
+        files = checked_value(tuple[str, ...], tables["plugins"], "plugins", places) if "plugins" in tables else ()
         output = Output(**checked_options(Output, table_of(tables, "output", places), "output", places))
         data = Data(**checked_options(Data, table_of(tables, "data", places), "data", places))
         if data.creases is not None:

@@ -5,13 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from orbiframe_bases.gaussian import Gaussian
-from orbiframe_fitters import few_samples
+from orbiframe_fitters import few_samples, normal_equations
 from orbiframe_parametrizers import elimination
 from reference_meshes import grid
 
 from orbiframe import fit
 from orbiframe.fitting.meaning import facets_show
+from orbiframe.functions import orbit_sum
 from orbiframe.meshes import orientation
+
+# Dense factors of a fit and sparse ones of its maps; pairs of a point and a lift, and tests for them: at most so many.
+FACTORS, COPIES = (34, 4), (4_400_000, 3_200_000)
 
 
 def counted(monkeypatch, owner, name):
@@ -75,3 +79,27 @@ def test_profiles_have_what_is_asked_for_and_no_more(order):
     assert len(found) == order + 1
     for some, every in zip(found, basis.profile(t), strict=False):
         assert np.array_equal(some, every)
+
+
+def test_a_default_fit_makes_few_factors_and_walks_few_copies(monkeypatch):
+    """Three factors a step, one for each trial of fairness, two a map.
+
+    Copies walked: pairs of a point and a lift of a centre that reaches it, and the tests that find them.
+    """
+    dense = counted(monkeypatch, normal_equations, "_factored")
+    of_maps = counted(monkeypatch, elimination, "factorised")
+    walked, pairs_of_block = np.zeros(2, dtype=int), orbit_sum._pairs_of_block
+
+    def noted(*given):
+        pairs = pairs_of_block(*given)
+        walked[:] += len(pairs.column), pairs.tests
+        return pairs
+
+    monkeypatch.setattr(orbit_sum, "_pairs_of_block", noted)
+    monkeypatch.setenv("ORBIFRAME_THREADS", "1")
+    mesh = grid(48, 24)
+    fit(mesh, size=250, progress=False)
+    assert FACTORS[0] / 2 <= len(dense) <= FACTORS[0]
+    assert 1 <= len(of_maps) <= FACTORS[1]
+    assert COPIES[0] / 2 <= walked[0] <= COPIES[0]
+    assert COPIES[1] / 2 <= walked[1] <= COPIES[1]
