@@ -22,7 +22,8 @@ from orbiframe_fitters.sliding_data import PAIRS, Feet, Schedule, away_from, lin
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-# A foot moves at most so many lengths of fairness in one step, and the surface is stretched at most so much in fairing.
+# A foot moves at most so many lengths of fairness, or spacings of functions, in one step, and the surface is stretched
+# at most so much in fairing.
 _LONGEST_STEP = 0.3
 _MOST_STRETCH = 30.0
 # A step that leaves more than this share of the distance is the last one.
@@ -75,7 +76,8 @@ class Slide:
         self.kinks, self.creased = Kinks.of(basis), samples.still is not None
         self.flat = samples.still is not None and bool(samples.still.all())
         self.spacing = spacing(basis, samples)
-        length = np.full(len(samples.weights), self.spacing) if samples.length is None else samples.length
+        length = np.full(len(samples.weights), self.spacing)
+        length = length if samples.length is None else np.maximum(length, samples.length)
         self.longest = [
             _LONGEST_STEP * length[chosen[part.weights > 0]]
             for part, chosen in chunks(samples)

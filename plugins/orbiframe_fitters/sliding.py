@@ -17,10 +17,11 @@ from orbiframe_fitters.sliding_data import Schedule
 
 Floats = NDArray[np.float64]
 
-# By the order of the energy; each entry holds until the next, the last one for all further steps.
+# By the order of the energy; each entry holds until the next, the last one for all further steps. Points of a smooth
+# surface are on both sides of a fit, so that what its curvature adds to the equations averages out, but for a tenth.
 _SCHEDULES = {
     2: (Schedule(1e-4, 1e-2, 1e-3), Schedule(1e-4, 5e-3, 1e-3)),
-    3: (Schedule(1e-4, 1e-3, 0.0), Schedule(1e-6, 1e-4, 0.0)),
+    3: (Schedule(1e-4, 1e-3, 0.0, 0.1), Schedule(1e-6, 1e-4, 0.0, 0.1)),
 }
 # Between creases flat facets are flat in any parametrization, so that very little fairness is enough; beside curved
 # ones more damping and some pull keep parameters from gliding away.
@@ -34,7 +35,8 @@ class Sliding(Fitter):
     A datum v of weight w is near the surface if its foot point f is near, whatever its parameters are. Every step finds
     the feet by Newton's method in X and minimises the sum of w ((1 - t) (n . (S(f) - v))^2 + t |S(f) - v|^2) and the
     fairing, with the normal n at f and t = d / (d + rho) for the distance d and the smaller radius of curvature rho:
-    Gauss and Newton's method, exact to second order. Fairness is measured in the metric of the surface as it is. Only
+    Gauss and Newton's method, exact to second order. Between points of a smooth surface, which lie on both sides, d is
+    counted a tenth. Fairness is measured in the metric of the surface as it is. Only
     three coordinates make a surface: other values, and functions without derivatives, are fitted by least squares.
     Fixed samples take no part; then the surface moves, as little as all samples and fairness allow, until it meets them
     and has their normals.
