@@ -32,10 +32,6 @@ class Schedule(NamedTuple):
     pull: float
     bent: float = 1.0
 
-    def stiffer(self, factor: float) -> Schedule:
-        """With so many times the fairing."""
-        return self._replace(fairing=factor * self.fairing)
-
 
 @dataclass(frozen=True, eq=False)
 class Feet:
