@@ -16,10 +16,11 @@ from orbiframe.fitting.fixed_points import with_fixed
 from orbiframe.fitting.made import made, made_coefficients
 from orbiframe.fitting.mapping import Mapped, Mapping
 from orbiframe.fitting.meaning import FACETS, Meaning, facets_show, meaning_of
+from orbiframe.fitting.nearness import nearer
 from orbiframe.fitting.size import LEAST_SIZE, default_size, size_needed
 from orbiframe.fitting.stages import Stages
 from orbiframe.functions.basis import Basis
-from orbiframe.functions.fitter import Fitter
+from orbiframe.functions.fitter import Fitter, StartedFitter
 from orbiframe.functions.samples import Samples
 from orbiframe.meshes.bisection import Bisection
 from orbiframe.orbifolds.atlas import Points
@@ -90,18 +91,18 @@ class Approximations:
                 raise FitError(f"the surface leaves the mesh by {found.accuracy.to_mesh.max:.2g} of the diagonal")
         except FitError as error:
             raise FitError("; ".join((str(error), *notes))) from error
-        return found._replace(energy=energy, notes=notes)
+        return found._replace(energy=energy, notes=(*notes, *found.notes))
 
     def _meant(self, mapped: Mapped, basis: Basis, meaning: Meaning, size: int) -> Approximation:
         """The surface of a mesh with this meaning."""
         if self._lifts(meaning, size):
             mapped = self._lifted(mapped, basis, meaning)
             basis = self._basis(mapped, size)
-        samples, surface = self._surface(mapped, basis, meaning, self._fitter(), self.config)
+        samples, surface, notes = self._surface(mapped, basis, meaning, self._fitter(), self.config)
         surface = self._moved(surface)
         arcs = samples if meaning.arcs(mapped.triangulation) else None
         accuracy = self.stages("error", accuracy_of, surface, arcs)
-        return Approximation(surface, mapped, samples, meaning, accuracy, 0.0, ())
+        return Approximation(surface, mapped, samples, meaning, accuracy, 0.0, notes)
 
     def _stray(self, found: Approximation) -> float:
         """By how many of its sizes the surface leaves a facet, where the mesh may mean something less smooth."""
@@ -182,16 +183,21 @@ class Approximations:
 
     def _surface(
         self, mapped: Mapped, basis: Basis, meaning: Meaning, fitter: Fitter, config: Config
-    ) -> tuple[Samples, OrbifoldSurface]:
+    ) -> tuple[Samples, OrbifoldSurface, tuple[str, ...]]:
+        """What was fitted, the surface, and what a user should know: the linear fit stays where steps made it worse."""
         triangulation, refinement, noise = mapped.triangulation, mapped.refinement, config.data.noise
         samples = self.stages("samples", meaning.samples, triangulation, refinement, basis.size, noise)
         samples = with_fixed(samples, self.mapping, mapped, config)
-        found = self.stages("fit", fitter.fit, basis, samples)
-        coefficients = made_coefficients(
-            self.stages.registry, self.config.fitter.name, found, (basis.size, samples.values.shape[1])
-        )
+        started = fitter.fit_started if isinstance(fitter, StartedFitter) else None
+        found = self.stages("fit", started or fitter.fit, basis, samples)
+        start, end = (found.start, found.coefficients) if started else (found, found)
+        shape = basis.size, samples.values.shape[1]
+        coefficients = made_coefficients(self.stages.registry, self.config.fitter.name, end, shape)
         recipe = self.config.basis.name, self._options(basis.size)
-        return samples, OrbifoldSurface(triangulation, refinement, basis, coefficients, np.zeros(3), 1.0, *recipe)
+        surface = OrbifoldSurface(triangulation, refinement, basis, coefficients, np.zeros(3), 1.0, *recipe)
+        if start is end or triangulation.crease is not None:
+            return samples, surface, ()
+        return samples, *self.stages("error", nearer, surface, start, samples, meaning.name == FACETS)
 
     def _moved(self, surface: OrbifoldSurface) -> OrbifoldSurface:
         """The surface with the coefficients that are moved by hand. Raises ConfigError for one that is not there."""

@@ -16,6 +16,8 @@ from .feet import (
 from .fitter import (
     Fitter as Fitter,
     PreparedFitter as PreparedFitter,
+    StartedFit as StartedFit,
+    StartedFitter as StartedFitter,
     ValidatedFit as ValidatedFit,
     ValidatedFitter as ValidatedFitter,
 )

@@ -41,6 +41,25 @@ class PreparedFitter(Fitter):
         """
 
 
+class StartedFit(NamedTuple):
+    """A fit by steps, and the linear fit that they began with, (size, d) each; the same array if no step was made."""
+
+    start: Floats
+    coefficients: Floats
+
+
+class StartedFitter(Fitter):
+    """A fitter that goes on from a linear fit, so that who knows more than the samples can choose between the two."""
+
+    def fit(self, basis: Basis, samples: Samples) -> Floats:
+        """The coefficients (size, d)."""
+        return self.fit_started(basis, samples).coefficients
+
+    @abstractmethod
+    def fit_started(self, basis: Basis, samples: Samples) -> StartedFit:
+        """The fit, and where it began."""
+
+
 class ValidatedFit(NamedTuple):
     """A fit and how well it foretells.
 

@@ -22,6 +22,9 @@ _OF_GIRTH = 0.5
 # A facet whose arc is higher than this share of the distance of functions stands for something curved.
 _SAGITTA = 0.002
 _FLAT = np.radians(3)
+# The size of facets, whose sixth power weighs fairness, is averaged so often with those about: vertices that are
+# scattered unevenly say nothing of how the surface bends.
+_ROUNDS = 4
 # A triangle so many times as wide as its neighbour does not belong to the same arc.
 _WIDE = 3.0
 
@@ -94,9 +97,11 @@ def sagittas(mesh: Polyhedron, area: Floats, crease: Bools | None = None, *, apa
 
 
 def _evened(mesh: Polyhedron, area: Floats) -> Floats:
-    """Areas of triangles like those of the triangles about them: means of means at their corners."""
+    """Areas of triangles like those of the triangles about them: means of means at their corners, a few times."""
     degree = np.maximum(np.bincount(mesh.tail, minlength=len(mesh.vertices)), 1)
-    return np.asarray((around_vertices(mesh, area) / degree)[mesh.triangles].mean(axis=1))
+    for _ in range(_ROUNDS):
+        area = (around_vertices(mesh, area) / degree)[mesh.triangles].mean(axis=1)
+    return area
 
 
 def lengths(triangulation: Triangulation, refinement: Bisection, area: Floats) -> Floats:

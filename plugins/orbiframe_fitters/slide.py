@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-import scipy.sparse
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from orbiframe import DifferentiableBasis, Points, Samples
 from orbiframe.functions import feet_of, foot_step, moved
 from orbiframe_fitters.chunks import chunks
-from orbiframe_fitters.coupled import KIND, coupled, nearly_solved
 from orbiframe_fitters.energy import Energy, energy_of, spacing
 from orbiframe_fitters.gram import Gram
 from orbiframe_fitters.kinks import Kinks
-from orbiframe_fitters.normal_equations import solved
+from orbiframe_fitters.slide_step import SlideStep
 from orbiframe_fitters.sliding_data import PAIRS, Feet, Schedule, away_from, linearised, products
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-# A foot moves at most so many lengths of fairness in one step, and the surface is stretched at most so much in fairing.
+# A foot moves at most so many lengths of fairness, or spacings of functions, in one step, and the surface is stretched
+# at most so much in fairing.
 _LONGEST_STEP = 0.3
 _MOST_STRETCH = 30.0
 # A step that leaves more than this share of the distance is the last one.
@@ -37,8 +36,6 @@ _LEAST_SHARE = 0.35
 _STIFFER, _STIFFEST = 10.0, 1e4
 # So many steps of Newton's lead data that were left out so far to their feet.
 _ALL_STEPS = 2
-# Up to so many functions the equations of a step are factored as a whole; of more, iteration takes less time.
-_DIRECT = 200
 # How much a kink across a hair counts against a distance of what it would lift at the spacing of the functions.
 _KINK = 10.0
 # How much a jump of the slope within the surface counts against a kink, beside curved facets, and if all are flat.
@@ -75,7 +72,8 @@ class Slide:
         self.kinks, self.creased = Kinks.of(basis), samples.still is not None
         self.flat = samples.still is not None and bool(samples.still.all())
         self.spacing = spacing(basis, samples)
-        length = np.full(len(samples.weights), self.spacing) if samples.length is None else samples.length
+        length = np.full(len(samples.weights), self.spacing)
+        length = length if samples.length is None else np.maximum(length, samples.length)
         self.longest = [
             _LONGEST_STEP * length[chosen[part.weights > 0]]
             for part, chosen in chunks(samples)
@@ -98,10 +96,11 @@ class Slide:
         distance, stiffer = self._distance(feet), 1.0
         for step in range(_MORE * steps):
             schedule = self.schedules[min(step, len(self.schedules) - 1)]
-            change = self._change(feet, coefficients, schedule.stiffer(stiffer))
+            equations = self._assembled(feet, coefficients, schedule)
+            change = equations.change(stiffer * schedule.fairing)
             while self._pinched(coefficients, coefficients + change) and stiffer < _STIFFEST:
                 stiffer *= _STIFFER
-                change = self._change(feet, coefficients, schedule.stiffer(stiffer))
+                change = equations.change(stiffer * schedule.fairing)
             before = distance
             for share in (1.0, 0.5, 0.25):
                 trial = coefficients + share * change
@@ -127,7 +126,7 @@ class Slide:
             points, _, jets = feet_of(self.basis, coefficients, part.points, part.values, longest, _ALL_STEPS)
             feet = Feet(points, self.basis.jet_matrices(points, 0), jets, part.values - jets[0])
             self._enter(gram, right, feet, part, schedule)
-        trial = coefficients + self._solved(gram, right, coefficients, schedule)
+        trial = coefficients + self._step(gram, right, coefficients).change(schedule.fairing)
         return coefficients if self._pinched(coefficients, trial) else trial
 
     def _feet(self, points: Points, targets: Floats, coefficients: Floats) -> Feet:
@@ -175,12 +174,12 @@ class Slide:
         worse = np.flatnonzero(~(found.distance < feet.distance))
         return found.replaced(worse, feet.take(worse))
 
-    def _change(self, feet: list[Feet], coefficients: Floats, schedule: Schedule) -> Floats:
-        """The change of the coefficients by one step of Gauss and Newton."""
+    def _assembled(self, feet: list[Feet], coefficients: Floats, schedule: Schedule) -> SlideStep:
+        """The equations of one step of Gauss and Newton."""
         gram, right = self._empty()
         for found, part in zip(feet, self.data, strict=True):
             self._enter(gram, right, found, part, schedule)
-        return self._solved(gram, right, coefficients, schedule)
+        return self._step(gram, right, coefficients)
 
     def _empty(self) -> tuple[Gram, Floats]:
         """The equations of a step before any data."""
@@ -193,21 +192,16 @@ class Slide:
         gram.add(feet.matrices[0], weights)
         right += feet.matrices[0].T @ wanted
 
-    def _solved(self, gram: Gram, right: Floats, coefficients: Floats, schedule: Schedule) -> Floats:
-        """The change of the coefficients by equations in which all data are entered; the rest is added here."""
+    def _step(self, gram: Gram, right: Floats, coefficients: Floats) -> SlideStep:
+        """The equations in which all data are entered; the rest is added here."""
         if self.kinks is not None:
             weights, wanted = self._smoothed(self.kinks, coefficients)
             gram.add(self.kinks.jump, weights)
             right += self.kinks.jump.T @ wanted
-        stiff: Any = csr_array((self.basis.size, self.basis.size))
-        if self.energy is not None and schedule.fairing:
-            stiff = schedule.fairing * self._stiffness(coefficients, self.energy)
-            right -= stiff @ coefficients
-        if self.basis.size > _DIRECT and not self.creased:
-            return nearly_solved(coupled(gram, stiff), right)
-        blocks = [block + stiff if kind in (0, 3, 5) else block for kind, block in enumerate(gram.matrices())]
-        rows = [[blocks[kind] for kind in line] for line in KIND]
-        return solved(_joined(rows), right.T.reshape(-1, 1)).reshape(3, -1).T
+        if self.energy is None:
+            return SlideStep(gram, right, None, np.zeros_like(right), self.creased)
+        bend = self._stiffness(coefficients, self.energy)
+        return SlideStep(gram, right, bend, np.asarray(bend @ coefficients), self.creased)
 
     @property
     def _room(self) -> float | None:
@@ -249,10 +243,3 @@ def _elements(part: _Fairness, coefficients: Floats) -> Floats:
     """The elements of area of the surface at samples, positive."""
     first, second = (slope @ coefficients for slope in part.slopes)
     return np.asarray(np.maximum(np.linalg.norm(np.cross(first, second), axis=1), np.finfo(float).tiny))
-
-
-def _joined(rows: list[list[Any]]) -> Floats | csr_array:
-    """The matrix of three coordinates from its blocks."""
-    if isinstance(rows[0][0], np.ndarray):
-        return np.block(rows)
-    return csr_array(scipy.sparse.block_array(rows))

@@ -22,15 +22,15 @@ PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 
 
 class Schedule(NamedTuple):
-    """How steps weigh against each other: fairing, damping of tangential motion, and least pull along the surface."""
+    """How steps weigh against each other: fairing, damping of tangential motion, and least pull along the surface.
+
+    bent: how much the curvature counts in the pull on data that are away from the surface.
+    """
 
     fairing: float
     damping: float
     pull: float
-
-    def stiffer(self, factor: float) -> Schedule:
-        """With so many times the fairing."""
-        return self._replace(fairing=factor * self.fairing)
+    bent: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +93,7 @@ def _known_normals(feet: Feet, part: Samples) -> tuple[Floats, Floats]:
 def linearised(feet: Feet, part: Samples, schedule: Schedule) -> tuple[Floats, Floats]:
     """For each datum the six entries of its quadratic form, (n, 6), and its right side, (n, 3)."""
     weights, (normal, curvature) = part.weights, _known_normals(feet, part)
-    away = np.linalg.norm(feet.gap, axis=1) * curvature
+    away = schedule.bent * np.linalg.norm(feet.gap, axis=1) * curvature
     pull = np.maximum(schedule.pull, away / (1 + away))
     pull = pull if part.still is None else np.where(_planes(part), schedule.pull, pull)
     pull = pull if part.held is None else np.where(part.held, 1.0, pull)

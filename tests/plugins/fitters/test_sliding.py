@@ -10,9 +10,10 @@ import reference_surfaces as surfaces
 from fitted import REGISTRY, grid
 from orbiframe_bases.gaussian import Gaussian
 from orbiframe_bases.powell_sabin import PowellSabin2, PowellSabin6
-from orbiframe_fitters import few_samples
+from orbiframe_fitters import few_samples, slide_step
 from orbiframe_fitters.least_squares import LeastSquares
 from orbiframe_fitters.slide import Slide
+from orbiframe_fitters.slide_step import SlideStep
 from orbiframe_fitters.sliding import Sliding
 from orbiframe_fitters.sliding_data import Feet, Schedule, linearised, normals_of
 
@@ -139,6 +140,45 @@ def test_the_pull_along_the_surface_is_that_of_the_squared_distance() -> None:
     np.testing.assert_allclose(wanted, [[0.5, 0, 0]], atol=1e-12)
 
 
+def test_points_on_both_sides_of_a_smooth_surface_hardly_stop_it_from_sliding() -> None:
+    """Of the curvature a tenth counts, so that the form along the surface is that of a tenth of the distance."""
+    from orbiframe import Points
+
+    jets = np.zeros((6, 1, 3))
+    jets[0], jets[1], jets[2], jets[3] = [2, 0, 0], [0, 2, 0], [0, 0, 1], [-2, 0, 0]
+    points = Points(np.zeros(1, int), np.eye(3)[:1])
+    found = []
+    for gap, bent in ((0.5, 0.1), (0.05, 1.0)):
+        feet = Feet(points, [], jets, np.array([[gap, 0.0, 0.0]]))
+        datum = Samples(points, jets[0] + feet.gap, np.ones(1), np.ones(1))
+        found.append(linearised(feet, datum, Schedule(0, 0, 0, bent))[0])
+    np.testing.assert_allclose(found[0], found[1], atol=1e-15)
+    assert found[0][0, 3] == pytest.approx(0.05 / 2.05)
+
+
+def test_more_fairness_needs_no_new_sums(mapped, exact, monkeypatch) -> None:
+    """A step that would pinch something off is tried with more fairness, and data and energy are summed up once."""
+    basis = PowellSabin6(mapped.orbifold, mapped, size=150)
+    samples = replace(exact, order=3)
+    counts = {"sums": 0, "solutions": 0}
+    stiffness, change = Slide._stiffness, SlideStep.change
+
+    def counted(self, *given):
+        counts["sums"] += 1
+        return stiffness(self, *given)
+
+    def changed(self, fairing):
+        counts["solutions"] += 1
+        return change(self, fairing)
+
+    pinched = iter([True, True, True])
+    monkeypatch.setattr(Slide, "_stiffness", counted)
+    monkeypatch.setattr(SlideStep, "change", changed)
+    monkeypatch.setattr(Slide, "_pinched", lambda *_: next(pinched, False))
+    Slide(basis, samples, (Schedule(1e-4, 1e-3, 0.0),)).from_start(LeastSquares().fit(basis, samples), 1)
+    assert counts["solutions"] == counts["sums"] + 3
+
+
 @pytest.mark.parametrize("options", [{"fairing": -1.0}, {"steps": -1}])
 def test_options_out_of_range(options) -> None:
     with pytest.raises(UsageError, match=next(iter(options))):
@@ -157,11 +197,10 @@ def test_no_step_is_the_linear_fit() -> None:
 @pytest.mark.parametrize("make", [Gaussian, PowellSabin6])
 def test_steps_of_many_functions_lead_where_those_of_few_do(make, mapped, exact, monkeypatch) -> None:
     """Equations solved by conjugate gradients to a few digits, and factored: nearly the same surface."""
-    from orbiframe_fitters import slide
 
     basis = make(mapped.orbifold, mapped, size=200)
     direct = basis.values(exact.points, Sliding().fit(basis, exact))
-    monkeypatch.setattr(slide, "_DIRECT", 0)
+    monkeypatch.setattr(slide_step, "_DIRECT", 0)
     iterated = basis.values(exact.points, Sliding().fit(basis, exact))
     assert np.abs(iterated - direct).max() < 0.05 * np.abs(direct - exact.values).max()
 
