@@ -32,7 +32,7 @@ def creased_shape(found: CreasedFaces, surface: OrbifoldSurface) -> Any:
     lines: dict[int, tuple[Any, int]] = {}
     borders = PlaneBorders(domain)
     faces = []
-    for plane in range(domain.planes.count):
+    for plane in range(domain.planes.number):
         loops = [
             [_edge(piece, domain, place, vertices, splines, lines) for piece in pieces]
             for pieces in borders.loops(plane)

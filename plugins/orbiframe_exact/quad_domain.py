@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 from scipy.optimize import Bounds, LinearConstraint, milp
 from scipy.sparse import coo_array
 
-from orbiframe import FitError, OrbifoldSurface, Points
+from orbiframe import OrbifoldSurface, Points
 from orbiframe.delaunay import delaunay_of_vertices, domain_for, vertex_points
 from orbiframe.triangulations import GeodesicTriangulation, girth
 from orbiframe_exact.quad_points import QuadPoints, settled
+from orbiframe_exact.thirds import thirds
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -42,7 +43,7 @@ class QuadDomain:
     (Q, 4), the edge at every side; rising: (Q, 4), whether the parameter of the edge grows with s or t there; ends:
     (E, 2), the vertices where every edge begins and ends; orientable: whether all can be seen from one side; triangles:
     those that are paired, and pair: (F,), the quadrilateral of each; into: (F, 3, 3), the isometry from the frame of
-    each to that of its quadrilateral, None where no points are found in them.
+    each to that of its quadrilateral; None where each triangle is three quadrilaterals in its own frame.
     """
 
     points: QuadPoints
@@ -77,7 +78,8 @@ class QuadDomain:
     @property
     def group_of_faces(self) -> Ints:
         """What `pair` says of the triangles under every face of a file, in the order of the faces."""
-        return np.arange(self.count)
+        groups = int(self.pair.max()) + 1
+        return np.repeat(np.arange(groups), self.count // groups)
 
     @property
     def smooth(self) -> Bools:
@@ -99,8 +101,8 @@ def quad_domain(surface: OrbifoldSurface, count: int, blocks: Ints | None = None
 
     The quality of a pair is the least sine between the two directions on the surface, or the root of the least area
     element over the greatest. Pairs that meet a vertex twice come last. Where triangles cannot be paired, or a
-    quadrilateral would be glued to itself or not be convex, there are more vertices; where none of these numbers makes
-    all convex, the best one is taken. Raises FitError where triangles cannot be paired at any.
+    quadrilateral would be glued to itself or not be convex, there are more vertices; where that does not help either,
+    every triangle is divided in three.
 
     blocks: (B, 4), quadrilaterals of vertices of the input. Their corners are the vertices then, and a pair that is one
     of them is worth more; they count for nothing where a pair comes out far from square.
@@ -110,18 +112,30 @@ def quad_domain(surface: OrbifoldSurface, count: int, blocks: Ints | None = None
         if found is not None:
             return found
     chi = int(surface.orbifold.euler_characteristic)
-    best, most = None, -np.inf
     for more in _MORE:
         vertices = max(count + chi, 1) + math.ceil(more * count)
         sites = domain_for(surface.orbifold, surface.triangulation, vertices, (1, 0, 0))
         found, quality = _paired(surface, sites)
-        if found is not None and quality > most:
-            best, most = found, quality
-        if most > _CONVEX:
-            break
-    if best is not None:
-        return best
-    raise FitError(f"no {count} faces cover this surface; ask for more of them, such as --faces {2 * count}")
+        if found is not None and quality > _CONVEX:
+            return found
+    return _divided(surface, count)
+
+
+def _divided(surface: OrbifoldSurface, count: int) -> QuadDomain:
+    """About twice `count` quadrilaterals, three in every triangle: all convex."""
+    vertices = max(math.ceil(count / 3) + int(surface.orbifold.euler_characteristic), 1)
+    sites = domain_for(surface.orbifold, surface.triangulation, vertices, (1, 0, 0))
+    corners, edge, ends = thirds(sites, sites.corners * _weights(surface, sites)[sites.vertex][..., None])
+    return QuadDomain(
+        QuadPoints(surface, corners, np.repeat(sites.patch, 3), np.repeat(sites.placement, 3, axis=0)),
+        edge,
+        np.ones(edge.shape, dtype=np.bool_),
+        ends,
+        surface.orbifold.orientable,
+        sites,
+        np.arange(sites.face_count),
+        None,
+    )
 
 
 def _of_blocks(surface: OrbifoldSurface, blocks: Ints) -> QuadDomain | None:

@@ -52,7 +52,7 @@ class Part:
             return self
         points, place = welded(self.points[:, None])
         tables = [_agreed(table, place, len(points)) for table in (self.normals, self.colors)]
-        return Part(points, self.sizes, place[self.tail], *tables, self.corner_uv)
+        return Part(points, self.sizes, place[self.tail], *tables, corner_uv=self.corner_uv)
 
 
 def polyhedron_of(parts: Sequence[Part], unit: str | None = None) -> Polyhedron:
