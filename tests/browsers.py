@@ -69,9 +69,9 @@ def asked_for(driver: Any) -> list[str]:
 
 def drawn(driver) -> None:
     """Wait until the panes show what they have, at rest: with all their pixels."""
-    script = """const done = arguments[0], sharp = () => [...document.querySelectorAll(".pane canvas")].every(
-          (c) => c.width + 1 >= c.clientWidth * Math.min(devicePixelRatio, 2));
-        const look = () => requestAnimationFrame(() => requestAnimationFrame(() => sharp() ? done() : look()));
+    script = """const done = arguments[0], all = [...document.querySelectorAll(".pane canvas")];
+        const look = () => requestAnimationFrame(() => requestAnimationFrame(() => resting() ? done() : look()));
+        const resting = () => all.every((canvas) => canvas.dataset.rest === "true");
         look();"""
     driver.execute_async_script(script)
 

@@ -12,4 +12,4 @@ from hypothesis import settings
 settings.register_profile("repeatable", derandomize=True, deadline=None, database=None)
 settings.load_profile("repeatable")
 
-pytest_plugins = ["command_line", "browsers"]
+pytest_plugins = ["command_line", "browsers", "installed_gmsh"]

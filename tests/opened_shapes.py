@@ -17,7 +17,7 @@ from OCP.gp import gp_Pnt, gp_Vec
 from OCP.GProp import GProp_GProps
 from OCP.IGESControl import IGESControl_Reader
 from OCP.STEPControl import STEPControl_Reader
-from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_REVERSED, TopAbs_SHELL, TopAbs_SOLID
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_REVERSED, TopAbs_SHELL, TopAbs_SOLID, TopAbs_VERTEX
 from OCP.TopExp import TopExp, TopExp_Explorer
 from OCP.TopoDS import TopoDS
 from orbiframe_exact.open_cascade import write_iges, write_step
@@ -120,3 +120,44 @@ def _faces(shape: Any) -> Iterator[Any]:
     while explorer.More():
         yield TopoDS.Face(explorer.Current())
         explorer.Next()
+
+
+def euler_characteristic(shape: Any) -> int:
+    """Vertices less edges plus faces, each once."""
+    kinds = (TopAbs_VERTEX, 1), (TopAbs_EDGE, -1), (TopAbs_FACE, 1)
+    found = 0
+    for kind, sign in kinds:
+        table = FacesOfEdges()
+        TopExp.MapShapesAndUniqueAncestors_s(shape, kind, TopAbs_SHELL, table)
+        found += sign * table.Extent()
+    return found
+
+
+def _free_edges(shape: Any) -> list[Any]:
+    """The edges at which one face ends alone."""
+    table = FacesOfEdges()
+    TopExp.MapShapesAndAncestors_s(shape, TopAbs_EDGE, TopAbs_FACE, table)
+    edges = [(table.FindKey(k), table.FindFromIndex(k).Extent()) for k in range(1, table.Extent() + 1)]
+    return [TopoDS.Edge(edge) for edge, count in edges if count == 1]
+
+
+def free_length(shape: Any) -> float:
+    """The length of the boundary of a shell."""
+    return sum(float(GCPnts_AbscissaPoint.Length_s(BRepAdaptor_Curve(edge))) for edge in _free_edges(shape))
+
+
+def free_points(shape: Any) -> Floats:
+    """Points of the boundary of a shell, 21 of each edge."""
+    curves = [BRepAdaptor_Curve(edge) for edge in _free_edges(shape)]
+    places = [c.Value(u) for c in curves for u in np.linspace(c.FirstParameter(), c.LastParameter(), 21)]
+    return np.array([[p.X(), p.Y(), p.Z()] for p in places])
+
+
+def vertices(shape: Any) -> Floats:
+    """The vertices of a shape, some of them more than once."""
+    explorer, found = TopExp_Explorer(shape, TopAbs_VERTEX), []
+    while explorer.More():
+        p = BRep_Tool.Pnt_s(TopoDS.Vertex(explorer.Current()))
+        found.append([p.X(), p.Y(), p.Z()])
+        explorer.Next()
+    return np.array(found)

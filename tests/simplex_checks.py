@@ -7,11 +7,11 @@ from itertools import permutations
 
 import mpmath
 import numpy as np
-from numba import njit
 from orbiframe_bases.simplex_kernels import _beside, _run
 from orbiframe_bases.simplex_splines import SimplexSplines
 
 from orbiframe import Points
+from orbiframe.compiled import compiled
 
 Arguments = Callable[[int, int], list[int]]
 
@@ -127,7 +127,7 @@ def _along(basis: SimplexSplines, coefficients: np.ndarray, face: int, t: np.nda
     return second(3) if order == 2 else a * second(6) + b * second(9)
 
 
-@njit
+@compiled
 def simplex_splines(program, rows, height, columns, values):
     """The jets in R^3 of the outputs of a program for one set of knots: values (n, outputs, 1, 3, 6 or 10).
 

@@ -1,4 +1,4 @@
-"""Make open_meshes.png, the picture of docs/how_to/open_meshes.md: `python docs/pictures/open_meshes.py`."""
+"""Make the picture of open meshes: `python docs/pictures/open_meshes.py [FOLDER]`; needs `pip install .[pictures]`."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ SHOWN = (
 )
 
 
-def main() -> None:
-    """Meshes above, surfaces below."""
+def main(folder: Path) -> None:
+    """Write open_meshes.png: meshes above, surfaces below."""
     figure, axes = plt.subplots(2, 3, figsize=(10, 6), dpi=90)
     for (title, make, view), (above, below) in zip(SHOWN, axes.T, strict=True):
         mesh = make()
         _draw_mesh(above, mesh, np.array(view))
         made = fit(mesh, size=800, boundary="auto", progress=False).surface.picture(width=500, view=view)
-        path = HERE / "part.png"
+        path = folder / "part.png"
         made.save(path)
         below.imshow(plt.imread(path))
         path.unlink()
@@ -39,7 +39,7 @@ def main() -> None:
         for axis in (above, below):
             axis.axis("off")
     figure.tight_layout()
-    figure.savefig(HERE / "open_meshes.png")
+    figure.savefig(folder / "open_meshes.png")
 
 
 def _draw_mesh(axis, mesh, view) -> None:
@@ -57,4 +57,4 @@ def _draw_mesh(axis, mesh, view) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else HERE)

@@ -15,7 +15,6 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import pyvista as pv
-from make import DATASETS, VIEW
 from matplotlib.collections import PolyCollection
 from PIL import Image
 
@@ -23,6 +22,7 @@ from orbiframe import Polyhedron, fit
 
 SHAPES = ("sphere", "torus", "plate_genus2")
 BLUE = "#1d4e89"
+VIEW = [(5, -9, 11), (0, 0, 0), (0, 0, 1)]
 
 
 def texture(size: int = 768, squares: int = 24) -> pv.Texture:
@@ -55,7 +55,7 @@ def main(folder: Path) -> None:
     """Write textures.png."""
     figure, axes = plt.subplots(2, len(SHAPES), figsize=(12, 7.6), dpi=90, height_ratios=(1, 1.05))
     for column, name in enumerate(SHAPES):
-        mesh = fit(DATASETS / f"{name}.off", size=400, output={"uv": True}, progress=False).output
+        mesh = fit(f"dataset:{name}", size=400, output={"uv": True}, progress=False).output
         axes[0, column].imshow(shown(mesh))
         coarse = mesh.corner_uv.reshape(-1, 3, 2)
         lines = PolyCollection(list(coarse), facecolors="#eef2f6", edgecolors=BLUE, linewidths=0.12)

@@ -53,8 +53,8 @@ def _boundary(polyhedron: Polyhedron) -> dict[str, Any] | None:
     None also where open edges make no loops, as where they touch.
     """
     from orbiframe.errors import TopologyError
-    from orbiframe.meshes.boundary_loops import boundary_loops
     from orbiframe.meshes.closing import closed_by
+    from orbiframe.meshes.loops import boundary_loops
     from orbiframe.meshes.surface_type import surface_type
 
     if (polyhedron.twin >= 0).all():

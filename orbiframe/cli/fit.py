@@ -125,7 +125,8 @@ def fitted(args: argparse.Namespace, registry: Registry, progress: Progress) -> 
     _require_destinations(args, config, registry)
     kind = _kind(args, config, registry)
     mesh = _repaired(args, config, registry) if repairs_asked(args) else args.mesh
-    if kind == "exporter" and config.boundary != "error":
+    options = export_options(args, config, registry) or {} if kind == "exporter" else {}
+    if kind == "exporter" and config.boundary != "error" and options.get("exact", True):
         mesh = mesh_of(mesh, config, registry)
         require_no_boundary(args.output, open_=bool((mesh.twin < 0).any()))
     found = fit_parts(mesh, config, registry, progress)
@@ -133,7 +134,6 @@ def fitted(args: argparse.Namespace, registry: Registry, progress: Progress) -> 
     if kind == "elements":
         written = _write_elements(args, found, config.output.refine or 1, registry, progress)
     elif kind == "exporter":
-        options = export_options(args, config, registry) or {}
         written = export(args.output, _only(found, args.output), options, registry, progress)
     else:
         gate.write(args.output, found.output, registry)

@@ -15,8 +15,6 @@ from pathlib import Path
 from typing import NamedTuple
 from uuid import uuid4
 
-from numba.core import config
-
 _OTHERS_WRITE, _GROUP_WRITES = stat.S_IWOTH, stat.S_IWGRP
 
 
@@ -38,8 +36,9 @@ def code_folders(source: Path) -> list[CodeFolder]:
     `__pycache__` beside the file, the user's own folder for such things, and a temporary one. The environment variable
     NUMBA_CACHE_DIR stands for the first two.
     """
-    lasting, temporary = config.CACHE_DIR or _user_folder(), _temporary_folder()
-    folders = [] if config.CACHE_DIR else [CodeFolder(source.parent / "__pycache__", False, True)]
+    named = os.environ.get("NUMBA_CACHE_DIR", "")
+    lasting, temporary = named or _user_folder(), _temporary_folder()
+    folders = [] if named else [CodeFolder(source.parent / "__pycache__", False, True)]
     folders += [CodeFolder(Path(lasting) / "orbiframe", True, True)] if lasting else []
     return folders + ([CodeFolder(temporary, True, False)] if temporary else [])
 

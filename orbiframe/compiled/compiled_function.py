@@ -1,60 +1,74 @@
-"""A compiled function: numba's dispatcher, with machine code of our own keeping and one version for each type."""
+"""A compiled function: runs kept machine code, and calls numba only where there is none yet."""
 
 from __future__ import annotations
 
+import inspect
+from collections.abc import Callable
+from functools import update_wrapper
+from threading import RLock
 from typing import Any
 
-from numba.core.compiler_lock import global_compiler_lock
-from numba.core.registry import CPUDispatcher
-from numba.core.sigutils import normalize_signature
-from numba.core.types.misc import unliteral
-
-from orbiframe.compiled import compilation
 from orbiframe.compiled.kept_code import KeptCode
+from orbiframe.compiled.kinds import described, kind_of
+
+_making = RLock()
 
 
-class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
-    """A function that is compiled for the types of its arguments when they are first met.
+class CompiledFunction:
+    """A function whose machine code is made for the kinds of its arguments when they are first met, and kept.
 
-    Whoever calls it from compiled code gets one version for each type, whereas numba makes another one for each number
-    that stands in a call; and a version without the wrapper that takes Python's objects. That is made, anew, when
-    Python calls the function with the same types.
+    Kept code is loaded without numba, whose import and whose own preparations take longer than a small fit.
     """
 
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
-        super().__init__(*args, **kwargs)
-        self._cache = KeptCode(self)
-        self._bare: set[tuple[Any, ...]] = set()
-        self.wrapped = True
+    __name__: str
+    __qualname__: str
 
-    def compile(self, signature: Any) -> Any:
-        """The code for a signature: that of before, or kept code, or new code."""
-        # Under the lock, since another thread may just be making a version without a wrapper.
-        with global_compiler_lock, compilation.ended():
-            kinds = tuple(normalize_signature(signature)[0])
-            if self.wrapped and kinds in self._bare:
-                self._bare.remove(kinds)
-                del self.overloads[kinds]
-            return super().compile(signature)
+    def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
+        update_wrapper(self, function)
+        self.py_func, self.options = function, options
+        self._signature, self._entries = inspect.signature(function), dict[object, Callable[..., Any]]()
+        self._count, self._kept = len(self._signature.parameters), KeptCode(self)
+        self._loading = RLock()
+        self._dispatcher: Any = None
 
-    def get_call_template(self, args: Any, kws: Any) -> Any:
-        """What the compiler asks for where compiled code calls this function."""
-        args = tuple(unliteral(arg) for arg in args)
-        kws = {name: unliteral(arg) for name, arg in kws.items()}
-        self._wrap(False)
-        try:
-            return super().get_call_template(args, kws)
-        finally:
-            self._wrap(True)
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
+        """Run the machine code for arguments of these kinds."""
+        if named or len(arguments) != self._count:
+            arguments = self._bound(arguments, named)
+        kinds = tuple(map(kind_of, arguments))
+        entry = self._entries.get(kinds)
+        if entry is None:
+            entry = self._entries[kinds] = self._entry(arguments)
+        return entry(*arguments)
 
-    def add_overload(self, result: Any) -> None:
-        """Enter a version; one without a wrapper stays unknown to the part that looks for versions from Python."""
-        if self.wrapped:
-            super().add_overload(result)
-        else:
-            self.overloads[tuple(result.signature.args)] = result
-            self._bare.add(tuple(result.signature.args))
+    def __reduce__(self) -> str:
+        return self.__qualname__
 
-    def _wrap(self, wrapped: bool) -> None:
-        self.wrapped = wrapped
-        self.targetoptions["no_cpython_wrapper"] = not wrapped
+    @property
+    def dispatcher(self) -> Any:
+        """What compiles the function, and what compiled functions call."""
+        from orbiframe.compiled.dispatcher import Dispatcher
+
+        with _making:
+            if self._dispatcher is None:
+                # Known before it looks around, as functions may call each other.
+                self._dispatcher = Dispatcher(self)
+                self._dispatcher.look_around()
+            return self._dispatcher
+
+    def _bound(self, arguments: tuple[Any, ...], named: dict[str, Any]) -> tuple[Any, ...]:
+        """All arguments in their order, those with defaults too."""
+        bound = self._signature.bind(*arguments, **named)
+        bound.apply_defaults()
+        return bound.args
+
+    def _entry(self, arguments: tuple[Any, ...]) -> Callable[..., Any]:
+        """The code for arguments like these: met before in other words, kept, or new."""
+        kinds = described(arguments)
+        if kinds is None:
+            found: Callable[..., Any] = self.dispatcher
+            return found
+        with self._loading:
+            if kinds not in self._entries:
+                self._entries[kinds] = self._kept.entry(kinds) or self.dispatcher.entry(arguments)
+            return self._entries[kinds]

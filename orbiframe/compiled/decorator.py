@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from functools import partial
 from typing import Any
-
-from numba.core import config
 
 from orbiframe.compiled.compiled_function import CompiledFunction
 
@@ -30,7 +29,7 @@ def compiled(
     """
     if function is None:
         return partial(compiled, arrays=arrays, may_divide_by_zero=may_divide_by_zero, inline=inline)
-    if config.DISABLE_JIT:
+    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
         return function
     # All said outright, as what is not said would be taken from whichever function is the first to call this one.
     options = {
@@ -44,4 +43,4 @@ def compiled(
         "nogil": True,
         "no_cfunc_wrapper": True,
     }
-    return CompiledFunction(function, targetoptions=options)
+    return CompiledFunction(function, options)

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from functools import cache
+from importlib.metadata import version
+from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
-import llvmlite
-import numba
 import numpy as np
-from numba.core import config
-from numba.core.dispatcher import Dispatcher
 
+# What numba is told in the environment or in a file of settings of its own, except where code is kept and who runs it.
+_SETTINGS, _NO_MATTER = ".numba_config.yaml", ("NUMBA_CACHE_DIR=", "NUMBA_NUM_THREADS=")
 _PLAIN = (bool, int, float, complex, str, bytes, type(None), type(...))
 
 
@@ -45,7 +47,7 @@ def _own(function: Any) -> tuple[bytes, tuple[Any, ...]]:
 
 
 def _options(function: Any) -> dict[str, Any]:
-    return {name: value for name, value in function.targetoptions.items() if name != "no_cpython_wrapper"}
+    return dict(function.options)
 
 
 def _code(code: CodeType, doc: str | None, function: FunctionType, called: list[Any]) -> Iterator[str]:
@@ -66,7 +68,7 @@ def _code(code: CodeType, doc: str | None, function: FunctionType, called: list[
 
 
 def _described(value: Any, called: list[Any], names: tuple[str, ...] = ()) -> str:
-    if isinstance(value, Dispatcher):
+    if hasattr(value, "py_func"):
         called.append(value)
         return "a compiled function"
     if isinstance(value, ModuleType):
@@ -87,21 +89,15 @@ def _described(value: Any, called: list[Any], names: tuple[str, ...] = ()) -> st
     raise TypeError(f"a {type(value).__name__} has no fingerprint; name a number, an array or a tuple of these")
 
 
-def describe_types(signature: Any) -> str:
-    """The types of arguments, with the fields of named tuples and where these are defined."""
-    kinds = getattr(signature, "args", signature)
-    return ", ".join(_described_type(kind) for kind in kinds)
+@cache
+def _versions() -> tuple[str, ...]:
+    return str(sys.implementation.cache_tag), version("numba"), version("llvmlite"), np.__version__
 
 
-def _described_type(kind: Any) -> str:
-    parts = [_described_type(part) for part in getattr(kind, "types", ())]
-    named = getattr(kind, "instance_class", None)
-    fields = (named.__module__, named.__qualname__, getattr(named, "_fields", None)) if named else None
-    return f"{kind}{fields or ''}{parts or ''}"
-
-
-def describe_machine(processor: tuple[Any, ...]) -> str:
+def describe_machine(processor: tuple[str, ...]) -> str:
     """The processor, the versions and the settings that machine code depends on."""
-    versions = sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__
-    settings = repr(config.OPT), config.BOUNDSCHECK, config.LOOP_VECTORIZE, config.SLP_VECTORIZE
-    return repr((processor, versions, settings, config.DEBUGINFO_DEFAULT))
+    settings = sorted(f"{name}={value}" for name, value in os.environ.items() if name.startswith("NUMBA_"))
+    settings = [setting for setting in settings if not setting.startswith(_NO_MATTER)]
+    with suppress(OSError):
+        settings.append(Path(_SETTINGS).read_text(encoding="utf-8"))
+    return repr((processor, _versions(), settings))

@@ -2,6 +2,7 @@
 
 from .crease_domain import crease_triangulation as crease_triangulation, creased as creased
 from .crease_sites import Asked as Asked
+from .edges_along import Geodesics as Geodesics, edges_along as edges_along, with_edges_along as with_edges_along
 from .polygon_fan import polygon_triangulation as polygon_triangulation
 from .site_triangulation import (
     SiteTriangulation as SiteTriangulation,
@@ -10,6 +11,7 @@ from .site_triangulation import (
 )
 from .sites import (
     lloyd as lloyd,
+    lloyd_step as lloyd_step,
     poisson_disc as poisson_disc,
     uniform_points as uniform_points,
     vertex_points as vertex_points,

@@ -14,13 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.delaunay.crease_sites import Asked, crease_sites
+from orbiframe.delaunay.edges_along import Geodesics, edges_along
 from orbiframe.delaunay.forced_edges import with_edge
 from orbiframe.delaunay.site_triangulation import delaunay_of_vertices
 from orbiframe.errors import MapError
-from orbiframe.orbifolds.atlas import Points
 from orbiframe.triangulations.crease_chains import Chain, CreaseGraph
 from orbiframe.triangulations.geodesic_triangulation import GeodesicTriangulation
-from orbiframe.triangulations.point_location import Locator
 from orbiframe.triangulations.triangulation import Triangulation
 
 Floats = NDArray[np.float64]
@@ -29,8 +28,6 @@ Bools = NDArray[np.bool_]
 
 # Pieces are halved so often, then made edges by flips; those without a middle are made edges so at once.
 _ROUNDS, _LAST_ROUNDS = 10, 8
-# How far, in barycentric coordinates, the middle of a piece of a crease may be from an edge.
-_ON_EDGE = 1e-7
 
 
 def creased(triangulation: Triangulation, crease: Bools, asked: Asked, seam: Bools | None = None) -> Triangulation:
@@ -121,23 +118,10 @@ def _edges_under(
     domain: GeodesicTriangulation, triangulation: Triangulation, pieces: list[Chain], vertex: Ints
 ) -> Ints:
     """The halfedge of the domain that is the geodesic between the ends of each piece; -1 for none or two."""
-    geometry, ends = domain.geometry, np.array([piece.vertices[[0, -1]] for piece in pieces])
+    ends = np.array([piece.vertices[[0, -1]] for piece in pieces])
     lifts = [piece.lifted(triangulation) for piece in pieces]
-    middle = geometry.project(np.array([lift[0] + lift[-1] for lift in lifts]))
-    location = Locator(domain).locate(Points(triangulation.patch[ends[:, 0]], middle))
-    face = np.empty(len(pieces), dtype=np.intp)
-    share = np.empty((len(pieces), 3))
-    face[location.order] = location.face
-    inside = np.linalg.solve(np.swapaxes(domain.corners[location.face], 1, 2), location.columns[:, :, :1])[..., 0]
-    share[location.order] = inside / inside.sum(axis=1, keepdims=True)
-    corner = (np.abs(share).argmin(axis=1) + 1) % 3
-    halfedge = 3 * face + corner
-    after = halfedge - corner + (corner + 1) % 3
-    joined = np.sort(domain.vertex.ravel()[np.stack([halfedge, after], axis=1)], axis=1)
-    right = (np.abs(share).min(axis=1) < _ON_EDGE) & (joined == np.sort(vertex[ends], axis=1)).all(axis=1)
-    edge = domain.edge[halfedge]
-    once = np.bincount(edge[right], minlength=domain.edge_count)[edge] == 1
-    return np.where(right & once, halfedge, -1)
+    start, end = np.array([lift[0] for lift in lifts]), np.array([lift[-1] for lift in lifts])
+    return edges_along(domain, Geodesics(triangulation.patch[ends[:, 0]], start, end, vertex[ends]))
 
 
 def _no_place(triangulation: Triangulation, piece: Chain) -> str:

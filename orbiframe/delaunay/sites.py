@@ -78,12 +78,23 @@ def lloyd(triangulation: GeodesicTriangulation, steps: int = 1, density: ArrayLi
     weight = np.broadcast_to(np.asarray(density, dtype=np.float64), triangulation.vertex_count)
     current = delaunay_of_vertices(triangulation)
     for _ in range(steps):
-        order = np.empty_like(current.vertex)
-        order[current.vertex] = np.arange(len(order))
-        moved = _towards(current.triangulation, _centroids(current.triangulation, weight[order]))
-        after = delaunay_of_vertices(moved)
-        current = SiteTriangulation(after.triangulation, after.vertex[current.vertex])
+        current = lloyd_step(current, weight)
     return current.triangulation
+
+
+def lloyd_step(current: SiteTriangulation, density: ArrayLike = 1.0, fixed: ArrayLike = False) -> SiteTriangulation:
+    """A step of Lloyd of the sites of a Delaunay triangulation, of which some are fixed, (n,); density: (n,), as above.
+
+    The numbers of sites stay.
+    """
+    count = len(current.vertex)
+    weight, still = np.empty(count), np.empty(count, dtype=np.bool_)
+    weight[current.vertex], still[current.vertex] = density, fixed
+    domain = current.triangulation
+    target = _centroids(domain, weight)
+    here = domain.corners.reshape(-1, 3)[domain.vertex_corner]
+    after = delaunay_of_vertices(_towards(domain, np.where(still[:, None], here, target)))
+    return SiteTriangulation(after.triangulation, after.vertex[current.vertex])
 
 
 def _placed(triangulation: GeodesicTriangulation, face: Ints, x: Floats) -> Points:

@@ -119,16 +119,17 @@ def export(
     """
     path = Path(path)
     require_output(path)
-    require_no_boundary(path, open_=surface.triangulation.inside is not None)
+    if (options or {}).get("exact", True):
+        require_no_boundary(path, open_=surface.triangulation.inside is not None)
     return dict(_write_whole(path, _component(path, registry, "exporter", None, options), surface) or {})
 
 
 def require_no_boundary(path: Path, *, open_: bool) -> None:
-    """Raise FitError for a surface with a boundary, which files of exact patches and of few faces do not trim."""
+    """Raise FitError for a surface with a boundary, which cuts exact patches and those of G+Smo in two."""
     if open_:
         raise FitError(
-            f"{path}: the surface has a boundary, and files for CAD hold closed surfaces only so far; write a mesh, to "
-            "part.ply, or curved triangles, to part.vtu with --order 3, or close the mesh first"
+            f"{path}: the surface has a boundary, which exact patches do not follow; write a few faces that end there, "
+            "to part.step without --exact, or curved triangles, to part.vtu with --order 3, or close the mesh first"
         )
 
 

@@ -17,6 +17,7 @@ from .edge_paths import (
 )
 from .face_diagonals import outline as outline, triangulated as triangulated
 from .fans import fan_labels as fan_labels
+from .loops import Loop as Loop, boundary_loops as boundary_loops
 from .marked_edges import MarkedEdges as MarkedEdges
 from .orientation import oriented as oriented, reversed_faces as reversed_faces
 from .polyhedron import Polyhedron as Polyhedron

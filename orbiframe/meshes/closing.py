@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.errors import TopologyError
-from orbiframe.meshes.boundary_loops import Loop, boundary_loops
+from orbiframe.meshes.loops import Loop, boundary_loops
 from orbiframe.meshes.orientation import reversed_faces
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas

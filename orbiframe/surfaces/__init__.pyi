@@ -1,5 +1,8 @@
 """The public names of orbiframe.surfaces, each with the module it lives in."""
 
+from .border import inside as inside
+from .border_curve import BorderCurve as BorderCurve, border_curves as border_curves
+from .border_pieces import BorderPieces as BorderPieces, even_pieces as even_pieces
 from .colour_scale import ColourScale as ColourScale
 from .complex_structure import PeriodMatrix as PeriodMatrix, period_matrix as period_matrix
 from .curved_edges import edge_curves as edge_curves
@@ -27,6 +30,7 @@ from .principal import (
     principal_curvature as principal_curvature,
 )
 from .quadrilateral_patches import QuadrilateralPatches as QuadrilateralPatches
+from .scattering import map_areas as map_areas, scattered_points as scattered_points
 from .shaded_mesh import ShadedPicture as ShadedPicture, shaded_picture as shaded_picture
 from .signatures import (
     heat_kernel as heat_kernel,
@@ -44,3 +48,8 @@ from .textures import (
 from .triangle_patches import TrianglePatches as TrianglePatches
 from .values_to_show import ShownValues as ShownValues, shown_values as shown_values
 from .whitney_form import edge_form as edge_form
+from .within_border import (
+    OpenTriangulation as OpenTriangulation,
+    edge_for as edge_for,
+    open_triangulation as open_triangulation,
+)

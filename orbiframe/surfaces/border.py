@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from scipy.special import roots_legendre
 
 from orbiframe.functions.basis import DifferentiableBasis
-from orbiframe.meshes.boundary_loops import boundary_loops
+from orbiframe.meshes.loops import boundary_loops
 from orbiframe.meshes.nearest_points import NearestPoints
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
@@ -122,18 +122,28 @@ def inside(surface: OrbifoldSurface, points: Points) -> NDArray[np.bool_]:
 def nearest_on_border(surface: OrbifoldSurface, targets: Floats) -> tuple[Points, Floats]:
     """The points of the boundary nearest to targets, (n, 3), and their distances, before the surface is placed.
 
-    The nearest of many points of the boundary, then golden sections about it along its edge.
+    The two nearest of many points of the boundary, which may lie on two edges, then golden sections about each along
+    its edge.
     """
     border, at = surface.triangulation.border, (np.arange(_PARTS) + 0.5) / _PARTS
-    there = surface.basis.values(_along(surface, border, at), surface.coefficients)
-    edge, part = np.divmod(cKDTree(there).query(targets)[1], _PARTS)
-    halfedges, low, high = border[edge], np.maximum(at[part] - 1 / _PARTS, 0), np.minimum(at[part] + 1 / _PARTS, 1)
+    tree = cKDTree(surface.basis.values(_along(surface, border, at), surface.coefficients))
+    found = [_searched(surface, border, near, targets) for near in np.asarray(tree.query(targets, 2)[1]).T]
+    better = found[1][2] < found[0][2]
+    halfedges, share, away = (np.where(better, other, one) for one, other in zip(*found, strict=True))
+    return _on_edges(surface, halfedges, share), away
+
+
+def _searched(surface: OrbifoldSurface, border: Ints, near: Ints, targets: Floats) -> tuple[Ints, Floats, Floats]:
+    """The nearest points about some of many points of the boundary: the halfedge, the share of it and the distance."""
+    edge, part = np.divmod(near, _PARTS)
+    middle, halfedges = (part + 0.5) / _PARTS, border[edge]
+    low, high = np.maximum(middle - 1 / _PARTS, 0), np.minimum(middle + 1 / _PARTS, 1)
     for _ in range(_SECTIONS):
         left, right = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
         nearer = _away(surface, halfedges, left, targets) < _away(surface, halfedges, right, targets)
         low, high = np.where(nearer, low, left), np.where(nearer, right, high)
-    middle = (low + high) / 2
-    return _on_edges(surface, halfedges, middle), _away(surface, halfedges, middle, targets)
+    share = (low + high) / 2
+    return halfedges, share, _away(surface, halfedges, share, targets)
 
 
 def _on_edges(surface: OrbifoldSurface, halfedges: Ints, share: Floats) -> Points:

@@ -19,15 +19,17 @@ _BALANCED = 1e-3
 def poisson(forms: SurfaceForms, source: Floats) -> Floats:
     """The coefficients (size,) of the function u of mean 0 with -Laplacian u = source, on the surface of the forms.
 
-    source: (n,), its values at `forms.points`. By Galerkin's method; the error falls like h^(degree + 1) with the size
-    of the triangles. Raises FitError unless the integral of the source is 0, as it must be on a closed surface.
+    source: (n,), its values at `forms.points`. At a boundary the derivative across it is 0: nothing flows out. By
+    Galerkin's method; the error falls like h^(degree + 1) with the size
+    of the triangles. Raises FitError unless the integral of the source is 0, as it must be where
+    nothing flows out.
     """
     values = _at_points(forms, source)
     total, size = float(forms.weights @ values), float(forms.weights @ np.abs(values))
     if abs(total) > _BALANCED * size:
         raise FitError(
-            f"the source has the integral {total:.6g} and no solution: on a closed surface it must be 0; subtract its "
-            f"mean, {total / forms.area:.6g}"
+            f"the source has the integral {total:.6g} and no solution: where nothing flows out it must be 0; subtract "
+            f"its mean, {total / forms.area:.6g}"
         )
     right = forms.against(forms.weights * (values - total / forms.area))
     return _of_mean_zero(forms, right)
@@ -36,7 +38,8 @@ def poisson(forms: SurfaceForms, source: Floats) -> Floats:
 def biharmonic(forms: SurfaceForms, source: Floats) -> Floats:
     """The coefficients (size,) of the function u of mean 0 with Laplacian Laplacian u = source: plates, and splines.
 
-    source: (n,), its values at `forms.points`. As two equations of Poisson, which on a closed surface it is, so that
+    source: (n,), its values at `forms.points`. As two equations of Poisson, which on a closed surface it is (at a
+    boundary the derivatives of u and of its Laplacian across it are 0), so that
     functions need no more than gradients, and the order of the error is that of `poisson`. Raises what that does.
     """
     bent = poisson(forms, source)
@@ -46,7 +49,8 @@ def biharmonic(forms: SurfaceForms, source: Floats) -> Floats:
 def heat(forms: SurfaceForms, start: Floats, time: float, steps: int = 64) -> Floats:
     """The coefficients (size,) of what the function with coefficients `start` has become after a time of heat flow.
 
-    By so many equal steps of Crank and Nicolson's method after two of Euler's, whose halves make rough starts smooth:
+    Nothing flows across a boundary. By so many equal steps of Crank and Nicolson's method after two of Euler's, whose
+    halves make rough starts smooth:
     second order in time. Raises FitError for a time that is not positive.
     """
     if not (time > 0 and steps > 1):

@@ -19,11 +19,13 @@ from orbiframe.orbifolds.atlas import Points
 from orbiframe.surfaces.border import inside
 from orbiframe.surfaces.nearest import nearest_points
 from orbiframe.surfaces.surface import OrbifoldSurface
-from orbiframe.surfaces.surface_integrals import integration
+from orbiframe.surfaces.surface_integrals import integration, within
 
 Floats = NDArray[np.float64]
 
 _BEYOND = 1e-2
+# Gauss points of integrals along each direction of a triangle.
+_GAUSS = 6
 FITTER = "smoothing"
 
 
@@ -71,6 +73,16 @@ class Field:
             raise FitError("this fitter tells no standard errors; take the fitter 'smoothing' or 'robust'")
         parts = [self.deviation(self.basis.design_matrix(part)) for part in chunks_of(points)]
         return np.asarray(self.scale * np.concatenate(parts))
+
+    def integral(self) -> Floats:
+        """The integrals (q,) of the functions over the surface, by its area in space."""
+        over = within(self.surface, self.basis, _GAUSS)
+        return np.asarray(over.area @ self.evaluate(over.points) * self.surface.scale**2)
+
+    def mean(self) -> Floats:
+        """The means (q,) of the functions over the surface, by its area in space."""
+        over = within(self.surface, self.basis, _GAUSS)
+        return np.asarray(over.area @ self.evaluate(over.points) / over.area.sum())
 
     @property
     def error(self) -> Floats | None:

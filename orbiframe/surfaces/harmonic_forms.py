@@ -18,7 +18,7 @@ from orbiframe.splines.element_basis import ElementBasis
 from orbiframe.splines.galerkin import stiffness
 from orbiframe.splines.multivalued import branches, jumping
 from orbiframe.surfaces.surface import OrbifoldSurface
-from orbiframe.surfaces.surface_forms import SurfaceForms
+from orbiframe.surfaces.surface_forms import SurfaceForms, require_whole
 from orbiframe.triangulations.cocycles import cohomology, require_cocycles
 
 Floats = NDArray[np.float64]
@@ -72,6 +72,7 @@ class HarmonicForms:
         cls, basis: ElementBasis, surface: OrbifoldSurface, *, on_x: bool = False, jumps: Ints | None = None
     ) -> HarmonicForms:
         """Those of a surface in space, or of X/H, by the scalar products of `SurfaceForms`."""
+        require_whole(surface)
         space = branches(basis)
         return cls._least(basis, space, SurfaceForms.of(surface, space, on_x=on_x).stiffness, jumps)
 

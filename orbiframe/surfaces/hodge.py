@@ -18,7 +18,7 @@ from orbiframe.orbifolds.atlas import Points
 from orbiframe.splines.element_basis import ElementBasis
 from orbiframe.surfaces.harmonic_forms import HarmonicForms, continuous_functions
 from orbiframe.surfaces.surface import OrbifoldSurface
-from orbiframe.surfaces.surface_forms import SurfaceForms
+from orbiframe.surfaces.surface_forms import SurfaceForms, require_whole
 from orbiframe.triangulations.cocycles import orientations
 
 Floats = NDArray[np.float64]
@@ -68,6 +68,7 @@ class Hodge:
     @classmethod
     def of(cls, surface: OrbifoldSurface, degree: int = _DEGREE, *, on_x: bool = False) -> Hodge:
         """On the surface in space, or on X/H itself. Raises FitError for a surface without derivatives."""
+        require_whole(surface)
         basis = continuous_functions(surface, degree)
         forms = SurfaceForms.of(surface, basis, on_x=on_x)
         return cls(surface, forms, HarmonicForms.with_forms(basis, surface, on_x=on_x))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,16 +11,18 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array, diags_array
 
 from orbiframe.errors import FitError
-from orbiframe.functions.basis import DifferentiableBasis
+from orbiframe.functions.basis import Basis, DifferentiableBasis
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.surfaces.surface import OrbifoldSurface
-from orbiframe.surfaces.surface_integrals import integration
+from orbiframe.surfaces.surface_integrals import Integration, over_faces, within
 
 Floats = NDArray[np.float64]
 
 _CHUNK = 1 << 14
 # Gauss points along each direction: one more than the degree, and so many at least.
 _LEAST = 6
+# How little gradients count beyond a boundary, where nothing else holds the functions: integrals change by that share.
+_BEYOND = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +31,9 @@ class SurfaceForms:
 
     points: n Gauss points; weights: (n,), the area of each; metric: (n, 3), the entries 11, 12 and 22 of the inverse of
     the first fundamental form there, in the frames of X; drift: (n, 2), what the Laplacian of the surface takes away
-    from the traces of covariant Hessians of X, as a vector along which to derive.
+    from the traces of covariant Hessians of X, as a vector along which to derive. Of a surface with a boundary all this
+    is on the surface alone, where equations mean that nothing flows across the boundary; beyond: what `stiffness` has
+    besides, so that functions that lie beyond are held, (size, size), None for a closed surface.
 
     >>> import numpy as np
     >>> from orbiframe import fit
@@ -44,6 +48,7 @@ class SurfaceForms:
     weights: Floats
     metric: Floats
     drift: Floats
+    beyond: csr_array | None = None
 
     @classmethod
     def of(
@@ -56,22 +61,23 @@ class SurfaceForms:
         chosen = surface.basis if basis is None else basis
         if not isinstance(chosen, DifferentiableBasis):
             raise FitError("this basis knows no derivatives, which gradients need; use one that does, such as 'ps6'")
-        number = max(getattr(chosen, "degree", 0) + 1, _LEAST)
-        if surface.triangulation.inside is not None:
-            raise FitError(
-                "the surface has a boundary, and integrals of functions and equations are for closed surfaces so far"
-            )
-        over = integration(surface, chosen, number)
+        over, own, beyond = within(surface, chosen, _number(chosen)), surface.triangulation.inside, None
+        if own is not None:
+            beyond = _BEYOND * cls._on_x(chosen, over_faces(surface, np.flatnonzero(~own), 2)).stiffness
         if on_x:
-            count = len(over.area)
-            return cls(chosen, over.points, over.area_on_x, np.tile([1.0, 0.0, 1.0], (count, 1)), np.zeros((count, 2)))
+            return replace(cls._on_x(chosen, over), beyond=beyond)
         _, first, second = surface.jet(over.points)
         e, f, g = (np.einsum("ni,ni->n", first[:, a], first[:, b]) for a, b in ((0, 0), (0, 1), (1, 1)))
         square = (over.area / over.area_on_x * surface.scale**2) ** 2
         metric = np.stack([g, -f, e], axis=1) / square[:, None]
         # The two connections differ by the tangential part of the covariant Hessian of the surface.
         bend = np.einsum("nk,nki,nai->na", metric * [1.0, 2.0, 1.0], second, first)
-        return cls(chosen, over.points, over.area * surface.scale**2, metric, _raised(metric, bend))
+        return cls(chosen, over.points, over.area * surface.scale**2, metric, _raised(metric, bend), beyond)
+
+    @classmethod
+    def _on_x(cls, basis: DifferentiableBasis, over: Integration) -> SurfaceForms:
+        count = len(over.area)
+        return cls(basis, over.points, over.area_on_x, np.tile([1.0, 0.0, 1.0], (count, 1)), np.zeros((count, 2)))
 
     @property
     def area(self) -> float:
@@ -86,7 +92,8 @@ class SurfaceForms:
     @cached_property
     def stiffness(self) -> csr_array:
         """The integrals of <grad b_i, grad b_j>, sparse (size, size)."""
-        return self._sum(_gradients(jets[1], jets[2], w[:, None] * metric) for jets, w, metric in self._parts(1))
+        found = self._sum(_gradients(jets[1], jets[2], w[:, None] * metric) for jets, w, metric in self._parts(1))
+        return found if self.beyond is None else csr_array(found + self.beyond)
 
     @cached_property
     def integrals(self) -> Floats:
@@ -125,6 +132,19 @@ class SurfaceForms:
 
     def _sum(self, parts: Iterator[csr_array]) -> csr_array:
         return csr_array(sum(parts, start=csr_array((self.basis.size, self.basis.size))))
+
+
+def _number(basis: Basis) -> int:
+    return max(getattr(basis, "degree", 0) + 1, _LEAST)
+
+
+def require_whole(surface: OrbifoldSurface) -> None:
+    """Raise FitError for a surface with a boundary, where harmonic forms ask for conditions that are not built."""
+    if surface.triangulation.inside is not None:
+        raise FitError(
+            "the surface has a boundary, and harmonic forms are those of closed surfaces; fit the mesh with its holes "
+            "closed by faces, or ask for fields, integrals, `poisson`, `heat` and `spectrum`, which end at the boundary"
+        )
 
 
 def _raised(metric: Floats, covectors: Floats) -> Floats:

@@ -16,7 +16,7 @@ from orbiframe.surfaces.surface import OrbifoldSurface
 Floats = NDArray[np.float64]
 
 # On the triangles of the map, where functions have no triangles of their own.
-_POINTS = 2
+_POINTS, _ON_MAP = 2, 3
 # The element is taken to be no smaller than this share of its mean: where it vanishes, the surface is not immersed.
 _LEAST_ELEMENT = 1e-3
 
@@ -45,16 +45,32 @@ def integration(surface: OrbifoldSurface, basis: Basis, number: int | None = Non
     each triangle of the map. number: as many along each direction instead. Surfaces scaled to unit size are meant, as
     their coefficients are.
     """
-    geometry = surface.orbifold.geometry
     if isinstance(basis, ElementBasis):
-        micro = basis.micro_triangles
+        geometry, micro = surface.orbifold.geometry, basis.micro_triangles
         corners = np.einsum("fij,fmcj->fmci", basis.domain.placement, micro).reshape(-1, 3, 3)
         patch, few = np.repeat(basis.domain.patch, micro.shape[1]), max(basis.degree - 2, 2)
-    else:
-        corners, few = surface.triangulation.lifts, _POINTS
-        patch = surface.triangulation.patch[surface.triangulation.polyhedron.triangles[:, 0]]
-    number = few if number is None else number
-    x, weights = triangle_points(geometry, geometry.project(corners), number)
+        return _over(surface, geometry.project(corners), patch, few if number is None else number)
+    return over_faces(surface, np.arange(len(surface.triangulation.lifts)), _POINTS if number is None else number)
+
+
+def within(surface: OrbifoldSurface, basis: Basis, number: int) -> Integration:
+    """Gauss points as `integration` has them, number along each direction; of a surface with a boundary alone.
+
+    There they lie on the triangles of the map, whose edges the boundary is, three along each direction.
+    """
+    own = surface.triangulation.inside
+    return integration(surface, basis, number) if own is None else over_faces(surface, np.flatnonzero(own), _ON_MAP)
+
+
+def over_faces(surface: OrbifoldSurface, faces: NDArray[np.intp], number: int) -> Integration:
+    """Gauss points on some triangles of the map, number along each direction, as in `integration`."""
+    flat = surface.triangulation
+    return _over(surface, flat.lifts[faces], flat.patch[flat.polyhedron.triangles[faces, 0]], number)
+
+
+def _over(surface: OrbifoldSurface, corners: Floats, patch: NDArray[np.intp], number: int) -> Integration:
+    """Gauss points on triangles of X, (m, 3, 3) in the frames of patches (m,)."""
+    x, weights = triangle_points(surface.orbifold.geometry, corners, number)
     points = Points(np.repeat(patch, number**2), x.reshape(-1, 3))
     element = surface.curvature(points).element / surface.scale**2
     area_on_x = np.abs(weights).ravel()

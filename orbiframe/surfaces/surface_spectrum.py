@@ -47,6 +47,7 @@ class Spectrum:
 def spectrum(forms: SurfaceForms, count: int) -> Spectrum:
     """The `count` smallest eigenvalues of the surface of the forms with their functions, multiple ones as often.
 
+    At a boundary their derivative across it is 0 (Neumann).
     By Galerkin's method in the basis of the forms, so they are upper bounds up to quadrature and rounding; by Lanczos'
     method on the inverse of the shifted problem from a start that is always the same. Raises FitError for a count below
     1 or above what the basis has.
@@ -56,8 +57,8 @@ def spectrum(forms: SurfaceForms, count: int) -> Spectrum:
     of (2 h residual / (pi degree))^2, the square of what the functions cannot follow, with the size h of the triangles
     in space: an estimate, which exceeds what is missing by a factor of 2.5 to 30 where it was tried. They know nothing
     of quadrature, which is right to rounding or nearly so for the functions of the surface itself, nor how far the
-    surface is from another one that was meant. They are nan for functions without a continuous gradient, and for those
-    with creases.
+    surface is from another one that was meant. They are nan for functions without a continuous gradient, for those
+    with creases, and for a surface with a boundary, across which a residual does not see what flows.
     """
     size = forms.basis.size
     if not 1 <= count <= size - _MARGIN - 2:
@@ -89,7 +90,7 @@ def _smallest(forms: SurfaceForms, count: int) -> tuple[Floats, Floats]:
 def _residuals(forms: SurfaceForms, values: Floats, columns: Floats) -> tuple[Floats, Floats]:
     """The norms of the residuals (k,), and what the functions cannot follow of them, (k,)."""
     creased = isinstance(forms.basis, ElementBasis) and forms.basis.domain.crease is not None
-    if forms.basis.smoothness < 1 or creased:
+    if forms.basis.smoothness < 1 or creased or forms.beyond is not None:
         return np.full(len(values), np.nan), np.full(len(values), np.nan)
     rest = forms.laplacians(columns) + values * forms.basis.values(forms.points, columns)
     return np.sqrt(forms.weights @ rest**2), (forms.weights * _reach(forms) ** 2) @ rest**2

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.testing.lab import Lab
 
 Numbers = NDArray[Any]
-Matrix = csc_array[Any]
+Matrix: TypeAlias = "csc_array[Any]"
 Component = Callable[[Matrix], Callable[[Numbers], Numbers]]
 
 _RESIDUAL = 1e-11

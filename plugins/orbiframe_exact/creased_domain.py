@@ -118,6 +118,7 @@ def creased_domain(surface: OrbifoldSurface, tolerance: float) -> CreasedDomain:
         d,
         group,
         None,
+        True,
         planes,
         half[:halves],
         plane[used],

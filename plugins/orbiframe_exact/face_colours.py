@@ -50,7 +50,9 @@ def face_colours(surface: OrbifoldSurface, domain: QuadDomain) -> FaceColours | 
     face, barycentric, area = _places(surface, groups)
     found = Locator(domain.triangles).locate(surface.points(face, barycentric))
     votes = np.zeros((groups, len(colours)))
-    np.add.at(votes, (domain.pair[found.face], which.ravel()[face[found.order]]), area[found.order])
+    group = domain.pair[found.face]
+    own = group >= 0
+    np.add.at(votes, (group[own], which.ravel()[face[found.order[own]]]), area[found.order[own]])
     return FaceColours(colours[votes.argmax(axis=1)], votes.max(axis=1) / np.maximum(votes.sum(axis=1), _tiny()))
 
 

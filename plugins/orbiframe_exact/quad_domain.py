@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,10 +11,12 @@ from numpy.typing import NDArray
 from scipy.optimize import Bounds, LinearConstraint, milp
 from scipy.sparse import coo_array
 
-from orbiframe import OrbifoldSurface, Points
+from orbiframe import FitError, OrbifoldSurface, Points, surface_type
 from orbiframe.delaunay import delaunay_of_vertices, domain_for, vertex_points
+from orbiframe.surfaces import OpenTriangulation, border_curves, map_areas, open_triangulation
 from orbiframe.triangulations import GeodesicTriangulation, girth
 from orbiframe_exact.quad_points import QuadPoints, settled
+from orbiframe_exact.rim_sides import RimSide, rim_side
 from orbiframe_exact.thirds import thirds
 
 Floats = NDArray[np.float64]
@@ -32,6 +35,10 @@ _BLOCK, _SQUARE_ENOUGH = 2.0, 0.1
 _MORE = (0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.5)
 # So much energy of the map's scale asks for one face more, and there are so many more at most.
 _ENERGY, _LIMBS = 5.0, 24
+# Corners of a boundary that are nearer than this share of an edge to a sharper one are rounded.
+_APART = 0.02
+# Shares that are tried at a boundary, whose corners may ask for many sides.
+_MORE_AT_RIMS = (0.0, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0, 8.0)
 _LOOK = np.linspace(0.02, 0.98, 7)
 
 
@@ -42,8 +49,9 @@ class QuadDomain:
     Side k of a quadrilateral runs from its corner k to the next: along s at t = 0, along t at s = 1, and back. edge:
     (Q, 4), the edge at every side; rising: (Q, 4), whether the parameter of the edge grows with s or t there; ends:
     (E, 2), the vertices where every edge begins and ends; orientable: whether all can be seen from one side; triangles:
-    those that are paired, and pair: (F,), the quadrilateral of each; into: (F, 3, 3), the isometry from the frame of
-    each to that of its quadrilateral; None where each triangle is three quadrilaterals in its own frame.
+    those that are paired, and pair: (F,), the quadrilateral of each, -1 for those beyond a boundary; into: (F, 3, 3),
+    the isometry from the frame of each to that of its quadrilateral; None where each triangle is three quadrilaterals
+    in its own frame; closed: whether there is no boundary.
     """
 
     points: QuadPoints
@@ -54,6 +62,7 @@ class QuadDomain:
     triangles: GeodesicTriangulation
     pair: Ints
     into: Floats | None
+    closed: bool
 
     @property
     def count(self) -> int:
@@ -83,8 +92,8 @@ class QuadDomain:
 
     @property
     def smooth(self) -> Bools:
-        """The edges at which the faces are to have common tangent planes, (E,): all of them."""
-        return np.ones(len(self.ends), dtype=np.bool_)
+        """The edges at which two faces are to have common tangent planes, (E,): all but those at a boundary."""
+        return np.asarray(self.sides_of_edges()[:, 1] >= 0)
 
 
 def default_count(surface: OrbifoldSurface) -> int:
@@ -93,7 +102,7 @@ def default_count(surface: OrbifoldSurface) -> int:
     Where the scale of the map changes a face cannot be as large: the energy of `girth` says how much it changes.
     """
     limbs = min(round(girth(surface.triangulation).energy / _ENERGY), _LIMBS)
-    return 16 + 8 * abs(int(surface.orbifold.euler_characteristic)) + limbs
+    return 16 + 8 * abs(surface_type(surface.own_mesh).euler_characteristic) + limbs
 
 
 def quad_domain(surface: OrbifoldSurface, count: int, blocks: Ints | None = None) -> QuadDomain:
@@ -107,6 +116,8 @@ def quad_domain(surface: OrbifoldSurface, count: int, blocks: Ints | None = None
     blocks: (B, 4), quadrilaterals of vertices of the input. Their corners are the vertices then, and a pair that is one
     of them is worth more; they count for nothing where a pair comes out far from square.
     """
+    if surface.triangulation.inside is not None:
+        return _open_domain(surface, count)
     if blocks is not None:
         found = _of_blocks(surface, blocks)
         if found is not None:
@@ -135,7 +146,28 @@ def _divided(surface: OrbifoldSurface, count: int) -> QuadDomain:
         sites,
         np.arange(sites.face_count),
         None,
+        True,
     )
+
+
+def _open_domain(surface: OrbifoldSurface, count: int) -> QuadDomain:
+    """About `count` quadrilaterals on a surface with a boundary, along which their sides run from corner to corner."""
+    area, rim = (float(x) for x in (map_areas(surface)[surface.triangulation.own_faces].sum(), _rim_length(surface)))
+    for more in _MORE_AT_RIMS:
+        wanted = (1 + more) * count
+        vertices = round(wanted + rim / (2 * math.sqrt(area / (math.sqrt(3) / 2) / wanted)))
+        sites = open_triangulation(surface, max(vertices, 4), apart=_APART, even=True)
+        found, quality = _paired(surface, sites.domain, rim=sites)
+        if found is not None and quality > 0:
+            return found
+    raise FitError(
+        f"no {count} faces cover this surface up to its boundary, which has corners or bends that they cannot follow; "
+        f"ask for more of them, such as --faces {4 * count}, or write a mesh, to part.ply"
+    )
+
+
+def _rim_length(surface: OrbifoldSurface) -> float:
+    return sum((curve.length for curve in border_curves(surface)), 0.0)
 
 
 def _of_blocks(surface: OrbifoldSurface, blocks: Ints) -> QuadDomain | None:
@@ -151,12 +183,18 @@ def _of_blocks(surface: OrbifoldSurface, blocks: Ints) -> QuadDomain | None:
 
 
 def _paired(
-    surface: OrbifoldSurface, sites: GeodesicTriangulation, blocks: Ints | None = None
+    surface: OrbifoldSurface,
+    sites: GeodesicTriangulation,
+    blocks: Ints | None = None,
+    rim: OpenTriangulation | None = None,
 ) -> tuple[QuadDomain | None, float]:
     """The pairs that are worth most, None where none cover all, and the least quality of one."""
     halfedge, vertex = np.arange(3 * sites.face_count), sites.vertex.ravel()
     start, end = vertex, vertex[_following(halfedge)]
-    inner = np.flatnonzero(sites.reference & (halfedge // 3 != sites.twin // 3))
+    kept = np.ones(sites.face_count, dtype=np.bool_) if rim is None else rim.kept
+    wall = np.zeros(len(halfedge), dtype=np.bool_) if rim is None else rim.wall
+    mates = (halfedge // 3 != sites.twin // 3) & kept[halfedge // 3] & kept[sites.twin // 3] & ~wall
+    inner = np.flatnonzero(sites.reference & mates)
     corners, sides, back = _quads(sites, inner)
     corner = np.where(back, end[sides], start[sides])
     twice = _has_twins(corner)
@@ -165,7 +203,7 @@ def _paired(
     worth = _PAIR + quality + np.where(twice, _MEETS_ITSELF, 0.0)
     if blocks is not None:
         worth += np.where(_are_among(corner, blocks), _BLOCK, 0.0)
-    chosen = _matching(np.stack([inner, sites.twin[inner]]) // 3, worth, sites.face_count)
+    chosen = _matching((np.cumsum(kept) - 1)[np.stack([inner, sites.twin[inner]]) // 3], worth, int(kept.sum()))
     if chosen is None:
         return None, 0.0
     sides, back = sides[chosen], back[chosen]
@@ -173,23 +211,35 @@ def _paired(
     edges, edge = np.unique(reference, return_inverse=True)
     if _has_twins(edge.reshape(sides.shape)).any():
         return None, 0.0
-    pair = np.empty(sites.face_count, dtype=np.intp)
+    pair = np.full(sites.face_count, -1)
     pair[inner[chosen] // 3] = pair[sites.twin[inner[chosen]] // 3] = np.arange(len(chosen))
     into = np.tile(np.eye(3), (sites.face_count, 1, 1))
     into[sites.twin[inner[chosen]] // 3] = sites.gluing[inner[chosen]]
     along = ((sides == reference) | sites.same[sides]) ^ back
     weighted = corners[chosen] * _weights(surface, sites)[corner[chosen]][..., None]
+    rims = () if rim is None else tuple(_rims(rim, wall, sides, corner[chosen], weighted))
     found = QuadDomain(
-        QuadPoints(surface, weighted, points.patch[chosen], points.placement[chosen]),
+        QuadPoints(surface, weighted, points.patch[chosen], points.placement[chosen], rims),
         edge.reshape(sides.shape),
         along ^ np.array([False, False, True, True]),
         np.stack([start[edges], end[edges]], axis=1),
-        surface.orbifold.orientable,
+        surface_type(surface.own_mesh).orientable,
         sites,
         pair,
         into,
+        rim is None,
     )
     return found, float((quality - twice)[chosen].min())
+
+
+def _rims(rim: OpenTriangulation, wall: Bools, sides: Ints, corner: Ints, weighted: Floats) -> Iterator[RimSide]:
+    """The sides of quadrilaterals along the boundary."""
+    piece = dict(zip(rim.domain.edge[rim.edges].tolist(), range(len(rim.edges)), strict=True))
+    first = rim.vertex[: len(rim.edges)]
+    for q, k in zip(*(x.tolist() for x in np.nonzero(wall[sides])), strict=True):
+        own = piece[int(rim.domain.edge[sides[q, k]])]
+        ends = weighted[q, k], weighted[q, (k + 1) % 4]
+        yield rim_side(rim.domain.geometry, rim, own, (q, k), ends, back=bool(first[own] != corner[q, k]))
 
 
 def _quads(sites: GeodesicTriangulation, inner: Ints) -> tuple[Floats, Ints, Bools]:

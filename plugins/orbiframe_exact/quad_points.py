@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from orbiframe import FitError, Geometry, OrbifoldSurface, Points
 from orbiframe.functions import DifferentiableBasis
+from orbiframe_exact.rim_sides import RimSide
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -22,13 +23,15 @@ class QuadPoints:
 
     corners: (Q, 4, 3), counterclockwise vectors on the rays of points of X; patch: (Q,) and placement: (Q, 3, 3), the
     isometry from the frame of each to that of a patch. The point (s, t) of a quadrilateral is the projection to X of
-    the bilinear combination of its corners, so that a side depends on its two ends alone.
+    the bilinear combination of its corners, so that a side depends on its two ends alone. rim: the sides that run along
+    the boundary of the surface, whose quadrilaterals are filled out to them (Coons).
     """
 
     surface: OrbifoldSurface
     corners: Floats
     patch: Ints
     placement: Floats
+    rim: tuple[RimSide, ...] = ()
 
     def jets(self, quad: Ints, s: Floats, t: Floats, order: int) -> list[Floats]:
         """The surface at points (n,) of quadrilaterals: F; and F_s, F_t for order 1; and F_st for order 2; (n, 3) each.
@@ -39,7 +42,7 @@ class QuadPoints:
         if not isinstance(basis, DifferentiableBasis):
             raise FitError("the functions have no derivatives, which smooth faces need; use others, such as 'gaussian'")
         geometry = self.surface.orbifold.geometry
-        x, *vectors = projected(geometry, *_bilinear(self.corners[quad], s[:, None], t[:, None]))
+        x, *vectors = projected(geometry, *self._flat(quad, s, t))
         place = geometry.settle(geometry.act(self.placement[quad], x))
         points, step = settled(self.surface, Points(self.patch[quad], place))
         frame = geometry.frame(points.x)
@@ -61,20 +64,28 @@ class QuadPoints:
 
         By Newton's steps for <e, p(s, t)> = 0 with two vectors e that are orthogonal to x.
         """
-        corners = self.corners[quad]
         least = np.eye(3)[np.abs(x).argmin(axis=1)]
         one = np.cross(x, least)
         one /= np.linalg.norm(one, axis=1, keepdims=True)
         other = np.cross(x, one)
         s, t = np.full(len(x), 0.5), np.full(len(x), 0.5)
         for _ in range(_NEWTON):
-            p, ps, pt, _ = _bilinear(corners, s[:, None], t[:, None])
+            p, ps, pt, _ = self._flat(quad, s, t)
             (a, b), (c, d), (f, g) = ([np.einsum("ni,ni->n", e, v) for e in (one, other)] for v in (ps, pt, p))
             determinant = a * d - b * c
             step = np.where(determinant == 0, 0.0, 1 / np.where(determinant == 0, 1.0, determinant))
             s = np.clip(s - step * (d * f - c * g), 0, 1)
             t = np.clip(t - step * (a * g - b * f), 0, 1)
         return s, t
+
+    def _flat(self, quad: Ints, s: Floats, t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """What is projected: p, p_s, p_t and p_st."""
+        found = _bilinear(self.corners[quad], s[:, None], t[:, None])
+        for rim in self.rim:
+            own = np.flatnonzero(quad == rim.quad)
+            for table, more in zip(found, rim.added(s[own], t[own]), strict=True):
+                table[own] += more
+        return found
 
 
 def _bilinear(corners: Floats, s: Floats, t: Floats) -> tuple[Floats, Floats, Floats, Floats]:

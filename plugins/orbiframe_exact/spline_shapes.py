@@ -35,13 +35,14 @@ _DIGITS = 9
 
 
 def spline_shape(found: FewFaces, surface: OrbifoldSurface) -> Any:
-    """A closed shell of B-spline faces in their place in space; a solid that looks outward where there is an inside."""
+    """A shell of B-spline faces in their place in space; a solid that looks outward where there is an inside."""
     place = Place(surface, np.concatenate(list(found.edge_poles.values())))
     edges = spline_edges(found, place, {})
     faces = [spline_face(found, q, place, edges) for q in range(found.domain.count)]
-    if found.domain.orientable and _volume(found) < 0:
+    solid = found.domain.orientable and found.domain.closed
+    if solid and _volume(found) < 0:
         faces = [face.Reversed() for face in faces]
-    return joined(faces, closed=True, solid=found.domain.orientable)
+    return joined(faces, closed=found.domain.closed, solid=solid)
 
 
 class Place:

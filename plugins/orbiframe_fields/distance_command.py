@@ -23,7 +23,7 @@ _METHODS = ("front", "heat")
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_surface_arguments(parser, boundary=True)
+    add_surface_arguments(parser)
     add = parser.add_argument
     source = "from where: the number of a vertex of MESH, from 0, or a place as X,Y,Z; any number of times"
     add("--from", dest="sources", metavar="PLACE", action="append", required=True, help=source)

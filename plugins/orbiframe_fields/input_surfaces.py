@@ -35,7 +35,7 @@ class Shown(NamedTuple):
     normals: Floats | None
 
 
-def add_surface_arguments(parser: argparse.ArgumentParser, *, boundary: bool) -> None:
+def add_surface_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments that say which surface is meant and how it is fitted."""
     add = parser.add_argument
     add("mesh", metavar="MESH", type=Path, help="surfaces, or a surface that `fit --save` wrote (.npz)")
@@ -46,8 +46,7 @@ def add_surface_arguments(parser: argparse.ArgumentParser, *, boundary: bool) ->
     )
     add("--config", metavar="FILE.toml", type=Path, help="components and options of the fit of the surface")
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.size=2000")
-    if boundary:
-        add_boundary(parser)
+    add_boundary(parser)
     add("--json", action="store_true", help="print one JSON object instead of the summary")
 
 
@@ -77,8 +76,7 @@ def input_surfaces(args: argparse.Namespace, registry: Registry) -> InputSurface
         mesh = vertices_of(surface)
         return InputSurfaces(mesh, [surface], [np.arange(len(mesh.vertices))])
     mesh = read(args.mesh, registry)
-    boundary = getattr(args, "boundary", None)
-    options = [*args.set, *([] if boundary is None else [f"mesh.boundary={boundary}"])]
+    options = [*args.set, *([] if args.boundary is None else [f"mesh.boundary={args.boundary}"])]
     fitted = fitted_surfaces(mesh, args.config, options, registry, args.progress)
     return InputSurfaces(mesh, [each.surface for each in fitted], [each.vertices for each in fitted])
 

@@ -19,7 +19,7 @@ _COUNT = 10
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_surface_arguments(parser, boundary=False)
+    add_surface_arguments(parser)
     add = parser.add_argument
     add("--count", metavar="N", type=int, default=_COUNT, help=f"how many eigenvalues, from 0 on; default {_COUNT}")
     add("--heat", metavar="T", type=float, action="append", default=[], help="also the heat kernel signature at time T")

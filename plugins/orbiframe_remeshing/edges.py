@@ -14,7 +14,9 @@ Bools = NDArray[np.bool_]
 
 
 class Edges(NamedTuple):
-    """All edges of a closed mesh: triangles (a, b, c) and, across the edge from a to b, (b, a, d) or turned round.
+    """All edges of a mesh: triangles (a, b, c) and, across the edge from a to b, (b, a, d) or turned round.
+
+    At the boundary of an open one the second triangle is the first again, and d is c.
 
     first, second: (E,), the triangles; a, b, c, d: (E,), the vertices; key: (E,), one number for each pair of ends,
     rising; vertex_count.
@@ -39,6 +41,10 @@ class Edges(NamedTuple):
         place = np.minimum(np.searchsorted(self.key, self.other_key), len(self.key) - 1)
         return np.asarray((self.key[place] == self.other_key) | (self.c == self.d))
 
+    def places(self, ends: Ints) -> Ints:
+        """The numbers of the edges with given ends, (n,)."""
+        return np.searchsorted(self.key, _key(ends[:, 0], ends[:, 1], self.vertex_count))
+
     def among(self, ends: Ints | None) -> Bools:
         """Whether each edge is one of those with given ends, (n, 2), (E,)."""
         if ends is None:
@@ -47,13 +53,13 @@ class Edges(NamedTuple):
 
 
 def edges_of(triangles: Ints, vertex_count: int) -> Edges:
-    """The edges of a closed mesh. Raises FitError where two edges have the same ends: then vertices are too few."""
+    """The edges of a mesh. Raises FitError where two edges have the same ends: then vertices are too few."""
     tail, head = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     key = _key(tail, head, vertex_count)
     order = np.argsort(key, kind="stable")
-    one, other = order[::2], order[1::2]
-    found = key[one]
-    if not (np.array_equal(found, key[other]) and (np.diff(found) > 0).all() and (tail != head).all()):
+    found, start, number = np.unique(key[order], return_index=True, return_counts=True)
+    one, other = order[start], order[start + number - 1]
+    if not ((number <= 2).all() and (tail != head).all()):
         raise FitError(
             f"{vertex_count} vertices are too few for this surface: some edges have the same two ends, which no file "
             "can tell apart; take more vertices, or shorter edges"

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from orbiframe import FitError, OrbifoldSurface, Points
 from orbiframe.delaunay import Asked, crease_triangulation, creased, delaunay, lloyd, vertex_points
+from orbiframe.surfaces import map_areas, scattered_points
 from orbiframe.triangulations import GeodesicTriangulation
 from orbiframe_remeshing.surface_mesh import SurfaceMesh, element, jets_at
 
@@ -21,7 +22,7 @@ _FINE = 4
 
 def surface_area(surface: OrbifoldSurface) -> float:
     """The area of a surface in space, from a fine mesh on it."""
-    return float(_map_areas(surface).sum()) * surface.scale**2
+    return float(map_areas(surface)[surface.triangulation.own_faces].sum()) * surface.scale**2
 
 
 def even_mesh(surface: OrbifoldSurface, count: int, seed: int = 0) -> SurfaceMesh:
@@ -62,16 +63,4 @@ def creased_mesh(surface: OrbifoldSurface, count: int) -> SurfaceMesh:
 
 def scattered(surface: OrbifoldSurface, count: int, seed: int = 0) -> Points:
     """Random points of X/H, one in every share of 1 / count of the area in space, taken along the triangles."""
-    area, rng = _map_areas(surface), np.random.default_rng(seed)
-    upto = np.cumsum(area)
-    wanted = (np.arange(count) + rng.random(count)) / count * upto[-1]
-    face = np.minimum(np.searchsorted(upto, wanted), len(area) - 1)
-    return surface.triangulation.locate(face, rng.dirichlet(np.ones(3), count))
-
-
-def _map_areas(surface: OrbifoldSurface) -> Floats:
-    """The area in space of every triangle of the map, its corners on the surface, before the surface is scaled."""
-    flat = surface.triangulation
-    places = surface.basis.values(Points(flat.patch, flat.points), surface.coefficients)
-    a, b, c = np.moveaxis(places[flat.polyhedron.triangles], 1, 0)
-    return np.asarray(np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2)
+    return scattered_points(surface, map_areas(surface), count, seed)

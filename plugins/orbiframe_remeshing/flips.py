@@ -36,15 +36,18 @@ def flipped_for_angles(places: Floats, triangles: Ints, kept: Ints | None = None
         triangles = _flipped(triangles, edges, chosen)
 
 
-def flipped_for_valences(places: Floats, triangles: Ints, kept: Ints | None = None) -> Ints:
-    """Triangles (F, 3) of which no flip brings the numbers of edges at four vertices nearer to six; kept: as above.
+def flipped_for_valences(
+    places: Floats, triangles: Ints, kept: Ints | None = None, regular: Ints | int = _REGULAR
+) -> Ints:
+    """Triangles (F, 3) of which no flip brings the numbers of them at four vertices nearer to six; kept: as above.
 
-    The sum of squares is what falls. No flip makes a least angle below 25 degrees smaller.
+    regular: other numbers than six, (V,). The sum of squares is what falls. No flip makes a least angle below
+    25 degrees smaller.
     """
     while True:
         edges = edges_of(triangles, len(places))
         before, after, allowed = _angles(places, edges, kept)
-        excess = np.bincount(triangles.ravel(), minlength=len(places)) - _REGULAR
+        excess = np.bincount(triangles.ravel(), minlength=len(places)) - regular
         fall = excess[edges.a] + excess[edges.b] - excess[edges.c] - excess[edges.d] - 2
         gain = np.where(allowed & (after > np.minimum(before, _ENOUGH)), fall, 0).astype(np.float64)
         chosen = _apart(gain, 0.0, (edges.a, edges.b, edges.c, edges.d), len(places))

@@ -25,7 +25,8 @@ def quadrilaterals(mesh: SurfaceMesh) -> Polyhedron:
     """Every triangle in three: from its corners to the middles of its edges and to its centroid.
 
     Middles and centroids are taken in X first, and then all vertices go to the middle of their faces in space. V
-    vertices become 6 V - 5 chi: those of the triangles come first, then the middles of edges, then the centroids.
+    vertices become 6 V - 5 chi, less 2 for each on a boundary: those of the triangles come first, then the middles of
+    edges, then the centroids.
     """
     triangles, count = mesh.triangles, len(mesh.places)
     edges = edges_of(triangles, count)
@@ -49,13 +50,21 @@ def quadrilaterals(mesh: SurfaceMesh) -> Polyhedron:
 
 
 def _middles(mesh: SurfaceMesh, edges: Edges) -> Points:
-    """The middles of edges, (E,), those of creases on the creases."""
-    found, sharp = _between(mesh, edges.a, edges.b), np.flatnonzero(edges.among(mesh.creases))
+    """The middles of edges, (E,), those of creases on the creases, and those of the boundary on the boundary."""
+    found = _between(mesh, edges.a, edges.b)
+    if mesh.rim is not None:
+        return _replaced(found, edges.places(mesh.rim.ends), mesh.rim.along(0.5))
+    sharp = np.flatnonzero(edges.among(mesh.creases))
     if not len(sharp):
         return found
     chords = (mesh.places[edges.a[sharp]] + mesh.places[edges.b[sharp]]) / 2
-    on_crease, patch, x = crease_points(mesh.surface, chords), found.patch.copy(), found.x.copy()
-    patch[sharp], x[sharp] = on_crease.patch, on_crease.x
+    return _replaced(found, sharp, crease_points(mesh.surface, chords))
+
+
+def _replaced(points: Points, some: Ints, others: Points) -> Points:
+    """Points of which some are others."""
+    patch, x = points.patch.copy(), points.x.copy()
+    patch[some], x[some] = others.patch, others.x
     return Points(patch, x)
 
 

@@ -21,13 +21,15 @@ def quality(mesh: Polyhedron) -> dict[str, Any]:
 
     angles in degrees: the least, the mean of the least of every face, the greatest, the number of faces with one below
     25 and the middle of the worst face; edges: mean, standard deviation, shortest and longest; regular: the share of
-    vertices with one edge more or less than six (triangles) or four (quadrilaterals), or just as many.
+    vertices with one edge more or less than six (triangles) or four (quadrilaterals), or just as many, of those
+    off a boundary.
     """
     size = int(mesh.face_sizes[0])
     faces = mesh.tail.reshape(-1, size)
     angles = corner_angles(mesh.vertices, faces)
     least, lengths = angles.min(axis=1), mesh.edge_lengths[mesh.representative]
-    valence = np.bincount(mesh.tail, minlength=len(mesh.vertices))
+    valence, inner = np.bincount(mesh.tail, minlength=len(mesh.vertices)), np.ones(len(mesh.vertices), dtype=np.bool_)
+    inner[np.concatenate([ends[mesh.twin < 0] for ends in (mesh.tail, mesh.head)])] = False
     return {
         "vertices": len(mesh.vertices),
         "faces": len(faces),
@@ -45,5 +47,5 @@ def quality(mesh: Polyhedron) -> dict[str, Any]:
             "shortest": float(lengths.min()),
             "longest": float(lengths.max()),
         },
-        "regular": float((np.abs(valence - (6 if size == 3 else 4)) <= 1).mean()),
+        "regular": float((np.abs(valence - (6 if size == 3 else 4)) <= 1)[inner].mean()) if inner.any() else 1.0,
     }

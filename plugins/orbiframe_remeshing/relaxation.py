@@ -33,20 +33,23 @@ def relaxed(mesh: SurfaceMesh) -> SurfaceMesh:
     for number in range(with_valences + without):
         triangles = flipped_for_angles(mesh.places, mesh.triangles, mesh.creases)
         if number < with_valences:
-            triangles = flipped_for_valences(mesh.places, triangles, mesh.creases)
+            triangles = flipped_for_valences(mesh.places, triangles, mesh.creases, mesh.regular)
         mesh = stepped(mesh.joined_by(triangles))
     mesh = mended(mesh.joined_by(flipped_for_angles(mesh.places, mesh.triangles, mesh.creases)), _POOR)
     return mesh.joined_by(flipped_for_angles(mesh.places, mesh.triangles, mesh.creases))
 
 
 def stepped(mesh: SurfaceMesh) -> SurfaceMesh:
-    """Every vertex off creases a step nearer to the centroid of its triangles, at most 0.35 of its shortest edge."""
+    """Every vertex off creases and boundary a step nearer to the centroid of its triangles.
+
+    At most 0.35 of its shortest edge.
+    """
     flat = np.concatenate([mesh.jets, np.zeros_like(mesh.jets)])
     longest = _FAR * shortest_edges(mesh.places, mesh.triangles)
     step = foot_step(flat, centroids(mesh.places, mesh.triangles), longest, bent=False)
     step[mesh.fixed] = 0.0
     points = moved(mesh.surface.orbifold, mesh.points, step)
-    return replace(SurfaceMesh.at(mesh.surface, points, mesh.triangles), creases=mesh.creases)
+    return replace(SurfaceMesh.at(mesh.surface, points, mesh.triangles), creases=mesh.creases, rim=mesh.rim)
 
 
 def centroids(places: Floats, triangles: Ints) -> Floats:

@@ -11,8 +11,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from orbiframe import FitError, Registry, UsageError
+from orbiframe import Registry, UsageError
 from orbiframe.files import require_apart, require_destination
+from orbiframe.fitting import add_boundary
 
 if TYPE_CHECKING:
     from orbiframe import OrbifoldSurface, Polyhedron
@@ -26,7 +27,7 @@ _LARGEST_ORDER = 6
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add = parser.add_argument
-    add("mesh", metavar="MESH", type=Path, help="closed surfaces, or one surface that `fit --save` wrote (.npz)")
+    add("mesh", metavar="MESH", type=Path, help="surfaces, or one surface that `fit --save` wrote (.npz)")
     add("-o", "--output", metavar="OUT", type=Path, required=True, help="the mesh to write")
     size = parser.add_mutually_exclusive_group(required=True).add_argument
     size("--edge-length", metavar="H", type=float, help="the mean length of edges, in units of the mesh")
@@ -36,6 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--format", metavar="NAME", help="with --order: the format, such as gmsh-2.2, instead of that of the suffix")
     add("--size", metavar="N", type=int, help="number of functions of the surface (basis.size)")
     add("--creases", metavar="ANGLE", help="edges that bend by ANGLE degrees or more stay, or 'marked' (data.creases)")
+    add_boundary(parser)
     add("--config", metavar="FILE.toml", type=Path, help="components and options of the fit")
     add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help="one option, such as basis.name=ps6")
     add("--seed", metavar="S", type=int, default=0, help="another mesh of the same kind; default 0")
@@ -81,29 +83,18 @@ def _surfaces(args: argparse.Namespace, registry: Registry) -> list[OrbifoldSurf
     from orbiframe.fitting import fit_parts
 
     if args.mesh.suffix.lower() == _SURFACE:
-        if args.config or args.set or args.size is not None or args.creases is not None:
+        if args.config or args.set or any(given is not None for given in (args.size, args.creases, args.boundary)):
             raise UsageError(
-                f"{args.mesh} is a finished surface; --config, --set, --size and --creases belong to meshes"
+                f"{args.mesh} is a finished surface; --config, --set, --size, --creases and --boundary belong to meshes"
             )
-        surface = load_surface(args.mesh, registry)
-        _require_closed(args, open_=surface.triangulation.inside is not None)
-        return [surface]
+        return [load_surface(args.mesh, registry)]
     size = [] if args.size is None else [f"basis.size={args.size}"]
     sharp = [] if args.creases is None else [f"data.creases={args.creases}"]
-    config = Config.load(args.config, [*args.set, *size, *sharp], registry)
+    ends = [] if args.boundary is None else [f"mesh.boundary={args.boundary}"]
+    config = Config.load(args.config, [*args.set, *size, *sharp, *ends], registry)
     mesh = read(args.mesh, registry, format=None if config.mesh.open else config.mesh.name)
-    _require_closed(args, open_=bool((mesh.twin < 0).any()))
     found = fit_parts(mesh, config, registry, args.progress)
     return [result.surface for result in found.results]
-
-
-def _require_closed(args: argparse.Namespace, *, open_: bool) -> None:
-    """Raise FitError for a mesh or a surface with a boundary."""
-    if open_:
-        raise FitError(
-            f"{args.mesh} has a boundary, and only closed surfaces are meshed anew so far; `orbiframe fit MESH -o OUT "
-            "--boundary auto` writes triangles of even size too"
-        )
 
 
 def _require_order(args: argparse.Namespace) -> None:
@@ -119,10 +110,10 @@ def _require_order(args: argparse.Namespace) -> None:
 
 def _made(surfaces: list[OrbifoldSurface], wanted: Wanted, seed: int) -> list[Any]:
     """A mesh on each surface, with its share of the vertices by area: triangles on it, or a mesh of quadrilaterals."""
-    from orbiframe_remeshing.remeshing import areas_of, even_triangles, remeshed
+    from orbiframe_remeshing.remeshing import areas_of, even_triangles, remeshed, rim_length
 
     areas = areas_of(surfaces)
-    total = wanted.total(sum(areas))
+    total = wanted.total(sum(areas), sum(map(rim_length, surfaces)))
     shares = [total * area / sum(areas) for area in areas]
     if wanted.quads:
         return [remeshed(surface, n, quads=True, seed=seed) for surface, n in zip(surfaces, shares, strict=True)]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,13 +16,23 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 
+class Rim(NamedTuple):
+    """The edges of triangles that lie along the boundary of a surface: their ends (n, 2), and where it is between them.
+
+    along: the points of X/H of the boundary at a share of the way from the first end of each edge to the second.
+    """
+
+    ends: Ints
+    along: Callable[[float], Points]
+
+
 @dataclass(frozen=True, eq=False)
 class SurfaceMesh:
     """Triangles with vertices on a surface, before it is placed in space.
 
     points: where the vertices lie in X/H; jets: (3, V, 3), their places in space and the two derivatives of the
     surface; triangles: (F, 3), alike in orientation where the surface is orientable; creases: (n, 2), the ends of the
-    edges that are creases, and stay; None for none.
+    edges that are creases, and stay; None for none; rim: those at the boundary, which are among these; None for none.
     """
 
     surface: OrbifoldSurface
@@ -28,6 +40,7 @@ class SurfaceMesh:
     jets: Floats
     triangles: Ints
     creases: Ints | None = None
+    rim: Rim | None = None
 
     @classmethod
     def at(cls, surface: OrbifoldSurface, points: Points, triangles: Ints) -> SurfaceMesh:
@@ -41,9 +54,21 @@ class SurfaceMesh:
 
     @property
     def fixed(self) -> NDArray[np.bool_]:
-        """The vertices on creases, which do not move, (V,)."""
+        """The vertices on creases and on the boundary, which do not move, (V,)."""
         found = np.zeros(len(self.places), dtype=np.bool_)
         found[[] if self.creases is None else self.creases.ravel()] = True
+        return found
+
+    @property
+    def regular(self) -> Ints:
+        """How many triangles there should be at every vertex, (V,): six, on the boundary as its angle asks for."""
+        found = np.full(len(self.places), 6)
+        if self.rim is not None:
+            angle = np.bincount(
+                self.triangles.ravel(), weights=corner_angles(self.places, self.triangles).ravel(), minlength=len(found)
+            )
+            vertex = self.rim.ends[:, 0]
+            found[vertex] = np.maximum(np.rint(angle[vertex] / 60), 1)
         return found
 
     def joined_by(self, triangles: Ints) -> SurfaceMesh:

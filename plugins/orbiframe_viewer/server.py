@@ -5,6 +5,7 @@ from __future__ import annotations
 import hmac
 import json
 import secrets
+import signal
 import threading
 from abc import ABC, abstractmethod
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -64,8 +65,18 @@ def serve(page: Page, port: int = 0) -> ThreadingHTTPServer:
 
     server = ThreadingHTTPServer((HOST, port), Own)
     Own.page, Own.port = page, server.server_port
-    threading.Thread(target=server.serve_forever, daemon=True).start()
+    threading.Thread(target=_answer, args=(server,), daemon=True).start()
     return server
+
+
+def _answer(server: ThreadingHTTPServer) -> None:
+    """Answer in this thread and those that it begins: a page that leaves amid an answer never ends the process.
+
+    Python ignores the signal for that, until a library such as Gmsh has it end the process again.
+    """
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGPIPE})
+    server.serve_forever()
 
 
 def address(server: ThreadingHTTPServer, page: Page) -> str:

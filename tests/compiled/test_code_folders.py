@@ -48,7 +48,7 @@ class Places:
 @pytest.fixture
 def places(tmp_path, monkeypatch):
     monkeypatch.setattr(code_folders.sys, "platform", "linux")
-    monkeypatch.setattr(code_folders.config, "CACHE_DIR", "")
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
@@ -113,7 +113,7 @@ def test_without_any_folder_nothing_is_kept_with_one_warning(places):
 
 
 def test_a_folder_that_the_user_names_comes_first(places, monkeypatch, tmp_path):
-    monkeypatch.setattr(code_folders.config, "CACHE_DIR", str(tmp_path / "named"))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "named"))
     assert places.write() == []
     assert places.read() == [b"code"]
     assert not places.beside.exists()

@@ -35,7 +35,7 @@ def _sum_of_powers(base):  # type: ignore[no-untyped-def]
 
 def test_numbers_in_calls_share_one_version():
     assert _sum_of_powers(2.0) == 4 + 8 + 16
-    assert [str(kind) for kinds in _power.signatures for kind in kinds] == ["float64", "int64"]
+    assert [str(kind) for kinds in _power.dispatcher.signatures for kind in kinds] == ["float64", "int64"]
 
 
 @compiled
@@ -54,7 +54,7 @@ def test_a_function_that_compiled_code_called_first_can_be_called_from_python():
     assert _inside(3) == 4
     assert _inside(3) == 4
     assert _outside(4) == 10
-    assert len(_inside.signatures) == 1
+    assert len(_inside.dispatcher.signatures) == 1
     assert _outside(0.5) == 3.0
     assert _inside(0.5) == 1.5
 
@@ -130,7 +130,7 @@ def _first(x):  # type: ignore[no-untyped-def]
 
 def test_inlined_and_without_arrays():
     assert _first(np.array([2.0])) == 6.0
-    assert _inlined.signatures == []
+    assert _inlined.dispatcher.signatures == []
 
 
 def test_the_docstring_stays():

@@ -179,7 +179,7 @@ def test_a_file_of_another_function_is_as_good_as_none(package):
 
 def test_a_setting_that_changes_machine_code_counts(package, monkeypatch):
     package.run()
-    monkeypatch.setattr(fingerprint.config, "BOUNDSCHECK", 1)
+    monkeypatch.setenv("NUMBA_BOUNDSCHECK", "1")
     assert package.run()[1] != []
 
 

@@ -17,6 +17,7 @@ from orbiframe_remeshing.remeshing import remeshed
 from orbiframe import OrbifoldSurface, Polyhedron
 
 require_gmsh()
+pytestmark = pytest.mark.usefixtures("signals_kept")
 
 # As meshio orders them: corners, then the middles of the edges 01, 12, 20, 03, 13, 23.
 EDGES = np.array([[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]])

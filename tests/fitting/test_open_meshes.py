@@ -15,13 +15,14 @@ from orbiframe.errors import ConfigError, FitError, FormatError, TopologyError
 from orbiframe.files import gate, surface_file
 from orbiframe.fitting.parts import fit_parts
 from orbiframe.fitting.pipeline import Result
-from orbiframe.meshes.boundary_loops import boundary_loops
+from orbiframe.meshes.loops import boundary_loops
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import area
 from orbiframe.meshes.surface_type import surface_type
 from orbiframe.meshes.unions import disjoint_union
 from orbiframe.surfaces import (
-    SurfaceForms,
+    HarmonicForms,
+    Hodge,
     curved_mesh,
     fit_field,
     input_faces,
@@ -160,8 +161,9 @@ def test_what_needs_a_closed_surface_says_so(tmp_path) -> None:
     surface = of("cylinder").surface
     with pytest.raises(FitError, match=r"has a boundary.*closed surfaces only so far; write a mesh"):
         gate.export(tmp_path / "tube.vtu", surface, REGISTRY)
-    with pytest.raises(FitError, match="has a boundary"):
-        SurfaceForms.of(surface)
+    for refused in (lambda: Hodge.of(surface), lambda: HarmonicForms.on_surface(surface)):
+        with pytest.raises(FitError, match=r"has a boundary.*holes closed by faces, or ask for fields"):
+            refused()
 
 
 def test_auto_doubles_annuli_and_bands_and_gives_the_others_a_collar() -> None:

@@ -10,9 +10,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from orbiframe.errors import TopologyError
-from orbiframe.meshes.boundary_loops import boundary_loops
 from orbiframe.meshes.closing import closed_by
 from orbiframe.meshes.defects import require_closed_surface
+from orbiframe.meshes.loops import boundary_loops
 from orbiframe.meshes.polyhedron import Polyhedron
 from orbiframe.meshes.sizes import vector_areas
 from orbiframe.meshes.submesh import submesh

@@ -17,6 +17,16 @@ const Panes = (() => {
     return stops[k].map((each, j) => (1 - t) * each + t * stops[k + 1][j]);
   };
 
+  // Whether the processor draws, and no graphics card. Then samples within pixels cost most of the time: pictures at rest have four
+  // pixels for one instead, and those of a movement none. Chromium calls no renderer slow that was asked for by name.
+  let slowly = null; // known once
+  const byProcessor = () => {
+    const gl = document.createElement("canvas").getContext("webgl2"), known = gl?.getExtension("WEBGL_debug_renderer_info");
+    const name = known ? gl.getParameter(known.UNMASKED_RENDERER_WEBGL) : gl?.getParameter(gl.RENDERER);
+    gl?.getExtension("WEBGL_lose_context")?.loseContext();
+    return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name || "");
+  };
+
   // ---- the two panes: a canvas each, with its camera ----
 
   const VERTEX = `
@@ -45,9 +55,12 @@ const Panes = (() => {
   class Pane {
     constructor(id, flat, heard) { // heard: changed() of the view, hovered(hit or null, pane)
       this.heard = heard;
-      this.share = 1; this.slow = 0; // of the pixels along a side; pictures in a row that took long
+      const antialias = !(slowly ??= byProcessor());
+      this.whole = antialias ? 1 : 2 / Math.min(devicePixelRatio, 2); // of the pixels along a side at rest
+      this.share = this.whole; this.slow = 0; // of the pixels now; pictures in a row that took long
       this.canvas = $(id).querySelector("canvas");
-      this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
+      this.canvas.dataset.rest = true;
+      this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias, alpha: true });
       this.renderer.setClearColor(0, 0);
       this.scene = new THREE.Scene();
       this.things = new THREE.Group();
@@ -96,8 +109,9 @@ const Panes = (() => {
     }
     // Where pictures take long, those of a movement have fewer pixels, and the picture at rest has all of them.
     paced() {
+      if (this.rest && this.share > 1) this.sharpen(1);
       clearTimeout(this.rest);
-      if (this.share < 1) this.rest = setTimeout(() => this.sharpen(1), REST);
+      this.rest = setTimeout(() => { this.rest = 0; if (this.share < this.whole) this.sharpen(this.whole); }, REST);
       const start = performance.now();
       requestAnimationFrame(() => {
         const slow = performance.now() - start > FRAME;
@@ -107,6 +121,7 @@ const Panes = (() => {
     }
     sharpen(share) {
       this.share = share; this.slow = 0;
+      this.canvas.dataset.rest = share === this.whole;
       this.fit(); this.heard.sharpened?.();
     }
     key(event) {
@@ -215,7 +230,7 @@ const Panes = (() => {
 
   const screenshot = (shown, name, said) => {
     const sheet = document.createElement("canvas");
-    for (const pane of shown) { pane.sharpen(1); pane.renderer.render(pane.scene, pane.camera); }
+    for (const pane of shown) { pane.sharpen(pane.whole); pane.renderer.render(pane.scene, pane.camera); }
     sheet.width = shown.reduce((sum, pane) => sum + pane.canvas.width, 0); sheet.height = Math.max(...shown.map((pane) => pane.canvas.height));
     const brush = sheet.getContext("2d");
     brush.fillStyle = getComputedStyle(document.body).backgroundColor; brush.fillRect(0, 0, sheet.width, sheet.height);

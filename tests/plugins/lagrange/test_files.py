@@ -62,6 +62,7 @@ def test_vtk_reads_the_same_cells_and_puts_the_nodes_where_we_do(order, tmp_path
     assert np.abs(inside[:, :2] - node_exponents(order)[:, 1:] / order).max() < 1e-12
 
 
+@pytest.mark.usefixtures("signals_kept")
 @pytest.mark.parametrize("order", ORDERS)
 def test_gmsh_reads_the_same_nodes_and_puts_them_where_we_do(order, tmp_path):
     reader = require_gmsh()

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import tomllib
-from pathlib import Path
 
 import pytest
+from documents import ROOT, module_of
+from matplotlib.image import imread
 from orbiframe_studies.orders import series_of
 from orbiframe_studies.plan import Plan
 from orbiframe_studies.results import Results
@@ -13,7 +14,7 @@ from orbiframe_studies.study_file import read_study
 
 from orbiframe import Registry
 
-EXAMPLE = Path(__file__).parents[3] / "docs" / "examples" / "two_holed_box.toml"
+EXAMPLE = ROOT / "docs" / "examples" / "two_holed_box.toml"
 
 
 def test_the_study_is_of_eight_families_and_four_sizes():
@@ -43,3 +44,6 @@ def test_errors_of_all_families_fall_with_their_number(orbiframe, tmp_path):
     assert len(list((folder / "kept").rglob("*.h5"))) == 8
     assert len(list((folder / "maps").rglob("*.npz"))) == 1
     assert (folder / "report.html").read_text().count("data:image/png") == 8
+    module_of(ROOT / "docs" / "pictures" / "two_holed_box.py").draw(folder, tmp_path / "orders.png")
+    height, width, _ = imread(tmp_path / "orders.png").shape
+    assert 300 < height < width < 1200

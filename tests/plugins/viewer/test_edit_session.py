@@ -253,7 +253,9 @@ def test_a_fit_that_fails_is_told_and_the_picture_stays(at_work, tmp_path):
     assert "the picture is that of the linear fit before" in session.state["error"]
     assert session.asked("picture.bin", {}) is not None
     sent(session, "save")
-    time.sleep(0.1)
+    while session.state["saving"]:
+        assert time.monotonic() < until
+        time.sleep(0.02)
     sent(session, "undo")
     sent(session, "undo")
     settled(session)
