@@ -27,7 +27,8 @@ Floats = NDArray[np.float64]
 def creased_shape(found: CreasedFaces, surface: OrbifoldSurface) -> Any:
     """A closed shell of planes, then B-spline faces, in their place in space; a solid where there is an inside."""
     domain = found.domain
-    place, vertices = Place(surface, domain.places), {}
+    place = Place(surface, domain.places)
+    vertices: dict[int, Any] = {}
     splines = spline_edges(found, place, vertices)
     lines: dict[int, tuple[Any, int]] = {}
     borders = PlaneBorders(domain)
