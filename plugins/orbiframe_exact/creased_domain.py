@@ -15,6 +15,7 @@ from orbiframe.splines import ElementBasis
 from orbiframe.triangulations import GeodesicTriangulation
 from orbiframe_exact.quad_domain import QuadDomain
 from orbiframe_exact.quad_points import QuadPoints
+from orbiframe_exact.thirds import thirds
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -53,7 +54,7 @@ class Planes(NamedTuple):
     border: Bools
 
     @property
-    def count(self) -> int:
+    def number(self) -> int:
         """How many planes there are."""
         return len(self.offset)
 
@@ -77,7 +78,7 @@ class CreasedDomain(QuadDomain):
     @property
     def group_of_faces(self) -> Ints:
         """The planes, and every curved triangle three times."""
-        return np.concatenate([np.arange(self.planes.count), np.repeat(self.pair[self.planes.region < 0], 3)])
+        return np.concatenate([np.arange(self.planes.number), np.repeat(self.pair[self.planes.region < 0], 3)])
 
     @property
     def smooth(self) -> Bools:
@@ -93,7 +94,8 @@ def creased_domain(surface: OrbifoldSurface, tolerance: float) -> CreasedDomain:
     basis = surface.basis
     assert isinstance(basis, ElementBasis)
     d = basis.domain
-    points, edge, ends = _thirds(surface, d)
+    corners, edge, ends = thirds(d, d.corners)
+    points = OneSidedPoints(surface, corners, np.repeat(d.patch, 3), np.repeat(d.placement, 3, axis=0))
     planes = _planes(points, d, _FLAT * tolerance, surface.orbifold.orientable and not d.same.any())
     curved = np.repeat(planes.region < 0, 3)
     used, number = np.unique(edge[curved], return_inverse=True)
@@ -106,7 +108,7 @@ def creased_domain(surface: OrbifoldSurface, tolerance: float) -> CreasedDomain:
     plane[2 * d.edge[flat]] = plane[2 * d.edge[flat] + 1] = planes.region[flat // 3]
     half = np.full(len(ends), -1)
     half[used] = np.arange(len(used))
-    group = np.where(planes.region < 0, planes.count + np.cumsum(planes.region < 0) - 1, planes.region)
+    group = np.where(planes.region < 0, planes.number + np.cumsum(planes.region < 0) - 1, planes.region)
     return CreasedDomain(
         _subset(points, curved),
         number.reshape(-1, 4),
@@ -115,8 +117,8 @@ def creased_domain(surface: OrbifoldSurface, tolerance: float) -> CreasedDomain:
         surface.orbifold.orientable,
         d,
         group,
-        True,
         None,
+        True,
         planes,
         half[:halves],
         plane[used],
@@ -127,32 +129,6 @@ def creased_domain(surface: OrbifoldSurface, tolerance: float) -> CreasedDomain:
 
 def _subset(points: OneSidedPoints, which: Bools) -> OneSidedPoints:
     return OneSidedPoints(points.surface, points.corners[which], points.patch[which], points.placement[which])
-
-
-def _thirds(surface: OrbifoldSurface, d: GeodesicTriangulation) -> tuple[OneSidedPoints, Ints, Ints]:
-    """Three quadrilaterals in every triangle, about its corners; their edges (3 F, 4), and the ends of these.
-
-    Of each edge of the triangulation both halves are edges, which run to its middle, then the lines from the middles to
-    the centroids.
-    """
-    x, middle = d.corners, (d.corners + np.roll(d.corners, -1, axis=1)) / 2
-    centre = np.broadcast_to(x.mean(axis=1, keepdims=True), x.shape)
-    corners = np.stack([x, middle, centre, np.roll(middle, 1, axis=1)], axis=2).reshape(-1, 4, 3)
-    here = np.arange(3 * d.face_count)
-    before = here - here % 3 + (here + 2) % 3
-    ahead = d.reference | d.same
-    first, last = 2 * d.edge + ~ahead, 2 * d.edge + ahead
-    inner = 2 * d.edge_count + here
-    edge = np.stack([first, inner, inner[before], last[before]], axis=1)
-    start, half = d.vertex.ravel(), np.flatnonzero(d.reference)
-    ends = np.empty((2 * d.edge_count + len(here), 2), dtype=np.intp)
-    ends[: 2 * d.edge_count : 2, 0] = start[half]
-    ends[1 : 2 * d.edge_count : 2, 0] = start[half - half % 3 + (half + 1) % 3]
-    ends[: 2 * d.edge_count, 1] = d.vertex_count + np.arange(2 * d.edge_count) // 2
-    ends[2 * d.edge_count :, 0] = d.vertex_count + d.edge
-    ends[2 * d.edge_count :, 1] = d.vertex_count + d.edge_count + here // 3
-    quads = OneSidedPoints(surface, corners, np.repeat(d.patch, 3), np.repeat(d.placement, 3, axis=0))
-    return quads, edge, ends
 
 
 def _planes(points: OneSidedPoints, d: GeodesicTriangulation, sag: float, orientable: bool) -> Planes:

@@ -25,6 +25,9 @@ class CreasedFaces(FewFaces):
 
     intervals: ClassVar[int] = 2
 
+    def _divide_limbs(self) -> None:
+        """Triangles of the functions are small where limbs are."""
+
     def _fit_edges(self, edges: list[int]) -> None:
         super()._fit_edges(edges)
         planes = self.domain.planes

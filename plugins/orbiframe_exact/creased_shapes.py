@@ -27,12 +27,13 @@ Floats = NDArray[np.float64]
 def creased_shape(found: CreasedFaces, surface: OrbifoldSurface) -> Any:
     """A closed shell of planes, then B-spline faces, in their place in space; a solid where there is an inside."""
     domain = found.domain
-    place, vertices = Place(surface, domain.places), {}
+    place = Place(surface, domain.places)
+    vertices: dict[int, Any] = {}
     splines = spline_edges(found, place, vertices)
     lines: dict[int, tuple[Any, int]] = {}
     borders = PlaneBorders(domain)
     faces = []
-    for plane in range(domain.planes.count):
+    for plane in range(domain.planes.number):
         loops = [
             [_edge(piece, domain, place, vertices, splines, lines) for piece in pieces]
             for pieces in borders.loops(plane)

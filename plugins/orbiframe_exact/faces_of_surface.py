@@ -55,7 +55,7 @@ def described(found: FewFaces, surface: OrbifoldSurface, tolerance: float) -> di
     """
     error = max(found.error.values(), default=0.0) * tolerance / found.tolerance
     angle = float(found.angle.max(initial=0.0))
-    planes = {"planes": found.domain.planes.count} if isinstance(found, CreasedFaces) else {}
+    planes = {"planes": found.domain.planes.number} if isinstance(found, CreasedFaces) else {}
     return planes | {
         "faces": found.domain.count + planes.get("planes", 0),
         "control_points": sum(poles.shape[0] * poles.shape[1] for _, poles in found.faces.values()),

@@ -86,7 +86,7 @@ class FewFaces:
 
     def _divide_limbs(self) -> None:
         """Put breaks where a face holds much of the surface in a small part of its square, as a limb within it."""
-        if self.domain.into is None:
+        if not self.domain.closed:
             return
         quad, s, t, area = places_in_quads(self.domain)
         for q in range(self.domain.count):

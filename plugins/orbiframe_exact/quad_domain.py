@@ -17,6 +17,7 @@ from orbiframe.surfaces import OpenTriangulation, border_curves, map_areas, open
 from orbiframe.triangulations import GeodesicTriangulation, girth
 from orbiframe_exact.quad_points import QuadPoints, settled
 from orbiframe_exact.rim_sides import RimSide, rim_side
+from orbiframe_exact.thirds import thirds
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -32,12 +33,12 @@ _MEETS_ITSELF = -10.0
 _BLOCK, _SQUARE_ENOUGH = 2.0, 0.1
 # How many vertices more are tried, as shares of those asked for.
 _MORE = (0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0, 1.5)
+# So much energy of the map's scale asks for one face more, and there are so many more at most.
+_ENERGY, _LIMBS = 5.0, 24
 # Corners of a boundary that are nearer than this share of an edge to a sharper one are rounded.
 _APART = 0.02
 # Shares that are tried at a boundary, whose corners may ask for many sides.
 _MORE_AT_RIMS = (0.0, 0.2, 0.5, 1.0, 2.0, 3.0, 5.0, 8.0)
-# So much energy of the map's scale asks for one face more, and there are so many more at most.
-_ENERGY, _LIMBS = 5.0, 24
 _LOOK = np.linspace(0.02, 0.98, 7)
 
 
@@ -48,9 +49,9 @@ class QuadDomain:
     Side k of a quadrilateral runs from its corner k to the next: along s at t = 0, along t at s = 1, and back. edge:
     (Q, 4), the edge at every side; rising: (Q, 4), whether the parameter of the edge grows with s or t there; ends:
     (E, 2), the vertices where every edge begins and ends; orientable: whether all can be seen from one side; triangles:
-    those that are paired, and pair: (F,), the quadrilateral of each, -1 for those beyond a boundary; closed: whether
-    there is none; into: (F, 3, 3), the isometry from the frame of each triangle to that of its quadrilateral, None
-    where no points are found in them.
+    those that are paired, and pair: (F,), the quadrilateral of each, -1 for those beyond a boundary; into: (F, 3, 3),
+    the isometry from the frame of each to that of its quadrilateral; None where each triangle is three quadrilaterals
+    in its own frame; closed: whether there is no boundary.
     """
 
     points: QuadPoints
@@ -60,8 +61,8 @@ class QuadDomain:
     orientable: bool
     triangles: GeodesicTriangulation
     pair: Ints
-    closed: bool
     into: Floats | None
+    closed: bool
 
     @property
     def count(self) -> int:
@@ -86,7 +87,8 @@ class QuadDomain:
     @property
     def group_of_faces(self) -> Ints:
         """What `pair` says of the triangles under every face of a file, in the order of the faces."""
-        return np.arange(self.count)
+        groups = int(self.pair.max()) + 1
+        return np.repeat(np.arange(groups), self.count // groups)
 
     @property
     def smooth(self) -> Bools:
@@ -110,8 +112,8 @@ def quad_domain(surface: OrbifoldSurface, count: int, blocks: Ints | None = None
 
     The quality of a pair is the least sine between the two directions on the surface, or the root of the least area
     element over the greatest. Pairs that meet a vertex twice come last. Where triangles cannot be paired, or a
-    quadrilateral would be glued to itself or not be convex, there are more vertices; where none of these numbers makes
-    all convex, the best one is taken. Raises FitError where triangles cannot be paired at any.
+    quadrilateral would be glued to itself or not be convex, there are more vertices; where that does not help either,
+    every triangle is divided in three.
 
     blocks: (B, 4), quadrilaterals of vertices of the input. Their corners are the vertices then, and a pair that is one
     of them is worth more; they count for nothing where a pair comes out far from square.
@@ -123,18 +125,31 @@ def quad_domain(surface: OrbifoldSurface, count: int, blocks: Ints | None = None
         if found is not None:
             return found
     chi = int(surface.orbifold.euler_characteristic)
-    best, most = None, -np.inf
     for more in _MORE:
         vertices = max(count + chi, 1) + math.ceil(more * count)
         sites = domain_for(surface.orbifold, surface.triangulation, vertices, (1, 0, 0))
         found, quality = _paired(surface, sites)
-        if found is not None and quality > most:
-            best, most = found, quality
-        if most > _CONVEX:
-            break
-    if best is not None:
-        return best
-    raise FitError(f"no {count} faces cover this surface; ask for more of them, such as --faces {2 * count}")
+        if found is not None and quality > _CONVEX:
+            return found
+    return _divided(surface, count)
+
+
+def _divided(surface: OrbifoldSurface, count: int) -> QuadDomain:
+    """About twice `count` quadrilaterals, three in every triangle: all convex."""
+    vertices = max(math.ceil(count / 3) + int(surface.orbifold.euler_characteristic), 1)
+    sites = domain_for(surface.orbifold, surface.triangulation, vertices, (1, 0, 0))
+    corners, edge, ends = thirds(sites, sites.corners * _weights(surface, sites)[sites.vertex][..., None])
+    return QuadDomain(
+        QuadPoints(surface, corners, np.repeat(sites.patch, 3), np.repeat(sites.placement, 3, axis=0)),
+        edge,
+        np.ones(edge.shape, dtype=np.bool_),
+        ends,
+        surface.orbifold.orientable,
+        sites,
+        np.arange(sites.face_count),
+        None,
+        True,
+    )
 
 
 def _open_domain(surface: OrbifoldSurface, count: int) -> QuadDomain:
@@ -213,8 +228,8 @@ def _paired(
         surface_type(surface.own_mesh).orientable,
         sites,
         pair,
-        rim is None,
         into,
+        rim is None,
     )
     return found, float((quality - twice)[chosen].min())
 

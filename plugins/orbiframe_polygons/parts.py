@@ -51,8 +51,8 @@ class Part:
         if not (Polyhedron.from_corners(self.points, offsets_of(self.sizes), self.tail).twin < 0).any():
             return self
         points, place = welded(self.points[:, None])
-        tables = [_agreed(table, place, len(points)) for table in (self.normals, self.colors)]
-        return Part(points, self.sizes, place[self.tail], *tables, self.corner_uv)
+        normals, colors = (_agreed(table, place, len(points)) for table in (self.normals, self.colors))
+        return Part(points, self.sizes, place[self.tail], normals, colors, self.corner_uv)
 
 
 def polyhedron_of(parts: Sequence[Part], unit: str | None = None) -> Polyhedron:

@@ -36,7 +36,7 @@ def domain_of(name: str):
 @pytest.mark.parametrize("name", SHAPES)
 def test_plane_regions_are_planes_and_the_rest_is_covered_three_times(name):
     domain = domain_of(name)
-    assert domain.planes.count == SHAPES[name][0]
+    assert domain.planes.number == SHAPES[name][0]
     assert domain.count == 3 * (domain.planes.region < 0).sum()
     on = np.flatnonzero(domain.planes.region >= 0)
     places = domain.places[domain.triangles.vertex[on]]
@@ -47,7 +47,7 @@ def test_plane_regions_are_planes_and_the_rest_is_covered_three_times(name):
 def test_the_borders_of_planes_are_closed_and_each_line_is_in_two_of_them():
     domain = domain_of("plate_genus2.off")
     borders, lines = PlaneBorders(domain), []
-    for plane in range(domain.planes.count):
+    for plane in range(domain.planes.number):
         for loop in borders.loops(plane):
             assert [end for _, _, end in loop] == [start for _, start, _ in loop[1:] + loop[:1]]
             lines += [piece[0] for piece in loop]

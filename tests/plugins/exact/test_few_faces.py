@@ -12,7 +12,7 @@ from orbiframe_exact import few_faces, quad_domain as quad_domain_module
 from orbiframe_exact.complete_spline import evaluate, evaluate_grid
 from orbiframe_exact.faces_of_surface import described, fitted
 from orbiframe_exact.few_faces import FewFaces
-from orbiframe_exact.quad_domain import _matching, default_count, quad_domain
+from orbiframe_exact.quad_domain import _divided, _matching, default_count, quad_domain
 from orbiframe_exact.quad_places import places_in_quads
 from scipy.spatial import cKDTree
 
@@ -231,9 +231,10 @@ def test_parameters_are_found_again(name):
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_vertices_are_found_in_the_faces(name):
+@pytest.mark.parametrize("make", [quad_domain, _divided])
+def test_vertices_are_found_in_the_faces(name, make):
     surface = fit_of(name).surface
-    domain = quad_domain(surface, 20)
+    domain = make(surface, 20)
     quad, s, t, area = places_in_quads(domain)
     there = domain.points.jets(quad, s, t, 0)[0]
     own = surface.basis.values(surface.vertex_points, surface.coefficients)
@@ -243,6 +244,21 @@ def test_vertices_are_found_in_the_faces(name):
     mesh = surface.triangulation.polyhedron
     a, b, c = np.moveaxis(mesh.vertices[mesh.triangles], 1, 0)
     assert area.sum() == pytest.approx(3 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+
+
+def test_where_no_domain_is_convex_triangles_are_divided_in_three(monkeypatch):
+    """All turns at corners are to the left, and the faces are as near and as smooth as others."""
+    surface = fit_of("plate_genus2_coarse.off").surface
+    real = quad_domain_module._paired
+    monkeypatch.setattr(quad_domain_module, "_paired", lambda *given: (real(*given)[0], -5.0))
+    found = fitted(surface, 40)
+    x = found.domain.points.corners
+    for k in range(4):
+        assert (np.linalg.det(np.stack([x[:, k - 1], x[:, k], x[:, (k + 1) % 4]], axis=1)) > 0).all()
+    said = described(found, surface, 1e-4)
+    assert said["reached"]
+    assert said["faces"] % 3 == 0
+    assert said["faces"] > 40
 
 
 def test_domains_that_are_not_convex_are_passed_over(monkeypatch):
