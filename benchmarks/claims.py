@@ -100,7 +100,7 @@ def table(found: list[Found]) -> Iterator[str]:
     """The rows of the page."""
     yield "| what | beside | milliseconds | theirs | ratio | claimed | said in |\n|---|---|---|---|---|---|---|"
     for claim, ours, theirs in found:
-        numbers = f"{1000 * ours:.1f} | {1000 * theirs:.1f} | {theirs / ours:.2g} | {claim.least:.2g}"
+        numbers = f"{1000 * ours:.1f} | {1000 * theirs:.1f} | {theirs / ours:.3g} | {claim.least:.2g}"
         yield f"| {claim.what} | {claim.peer} | {numbers} | {claim.where} |"
 
 

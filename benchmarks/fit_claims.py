@@ -149,5 +149,5 @@ CLAIMS = (
     Claim("`--fast`", "the default fit", 2.0, _SIZE, linear),
     Claim("a field at 20,000 points", "scipy's `RBFInterpolator`", 30.0, "[fields](../how_to/fields.md)", field),
     Claim("a first call of kept code, in a new process", "the same by numba", 1.5, "decision 50", start),
-    Claim("default fit of `plate_genus2.off`", "Loop's subdivision by trimesh", 0.02, "README", subdivision),
+    Claim("default fit of a plate with two holes", "Loop's subdivision by trimesh", 0.02, "README", subdivision),
 )

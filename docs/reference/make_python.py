@@ -42,7 +42,7 @@ def names_of(facade: str) -> list[str]:
 
 def text_of(facade: str, name: str) -> str:
     """What a name says of itself: the docstring of a class or function, the comment above anything else."""
-    thing = getattr(import_module(facade), name)
+    thing = inspect.unwrap(getattr(import_module(facade), name))
     if inspect.isclass(thing) or inspect.isroutine(thing) or inspect.ismodule(thing):
         return inspect.getdoc(thing) or ""
     lines = source_of(facade, name).read_text(encoding="utf-8").splitlines()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from importlib import import_module
-from inspect import isclass, isroutine
+from inspect import isclass, isroutine, unwrap
 from pathlib import Path
 
 DOCS = Path(__file__).parents[1]
@@ -17,7 +17,7 @@ from make_python import facades, names_of, text_of  # noqa: E402
 
 def directive(facade: str, name: str) -> str:
     """What autodoc is asked for a name."""
-    thing = getattr(import_module(facade), name)
+    thing = unwrap(getattr(import_module(facade), name))
     if isclass(thing):
         bases = "   :show-inheritance:\n" if issubclass(thing, Exception) else ""
         return f".. autoclass:: {facade}.{name}\n   :members:\n{bases}{hidden_bases(thing)}"
