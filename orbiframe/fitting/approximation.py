@@ -197,7 +197,7 @@ class Approximations:
         surface = OrbifoldSurface(triangulation, refinement, basis, coefficients, np.zeros(3), 1.0, *recipe)
         if start is end or triangulation.crease is not None:
             return samples, surface, ()
-        return samples, *self.stages("error", nearer, surface, start, samples, meaning.name == FACETS)
+        return samples, *nearer(surface, start, samples, meaning.name == FACETS)
 
     def _moved(self, surface: OrbifoldSurface) -> OrbifoldSurface:
         """The surface with the coefficients that are moved by hand. Raises ConfigError for one that is not there."""
