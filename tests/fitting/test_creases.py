@@ -285,14 +285,3 @@ def test_cad_files_have_every_crease_as_edges_at_its_angle(tmp_path: Path, name:
     assert np.abs(edges[sharp, 1] - 90).max() < 0.5
     volume = np.linalg.det(mesh.vertices[mesh.triangles]).sum() / 6
     assert opened.volume(shape) == pytest.approx(volume, rel=1e-4)
-
-
-def test_few_faces_of_a_creased_surface_are_refused(tmp_path: Path) -> None:
-    pytest.importorskip("OCP", reason='Open CASCADE is the extra "orbiframe[cad]"')
-    from orbiframe_exact.open_cascade import write_step
-
-    from orbiframe.errors import FitError
-
-    surface = fitted_with_creases("cube.off", 30, 300, "basis.name=ps2").surface
-    with pytest.raises(FitError, match="would round the creases"):
-        write_step(tmp_path / "cube.step", surface, exact=False)
