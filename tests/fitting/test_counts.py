@@ -15,7 +15,7 @@ from orbiframe.functions import orbit_sum
 from orbiframe.meshes import orientation
 
 # Dense factors of a fit and sparse ones of its maps; pairs of a point and a lift, and tests for them: at most so many.
-FACTORS, COPIES = (34, 4), (4_800_000, 3_500_000)
+FACTORS, COPIES = (34, 4), (4_800_000, 3_700_000)
 
 
 def counted(monkeypatch, owner, name):
