@@ -98,6 +98,7 @@ def accuracy_of(surface: OrbifoldSurface, arcs: Samples | None = None) -> Accura
     _require_sane(there, samples.values, samples.weights)
     mesh = flat if inside is None else submesh(flat, inside).mesh
     back = NearestPoints(mesh).distance(there)
+    border = None if inside is None else _sound(border_of(surface), surface.basis.size)
     at_vertices = np.zeros(len(flat.vertices))
     at_vertices[own[:count]] = away[:count]
     return Accuracy(
@@ -106,7 +107,7 @@ def accuracy_of(surface: OrbifoldSurface, arcs: Samples | None = None) -> Accura
         _distances(away[:given], samples.weights[:given], samples.values[:given]),
         _tilt(normals[count:], vector_areas(flat)[own[count:] - len(flat.vertices)]),
         at_vertices,
-        None if inside is None else border_of(surface),
+        border,
         None if arcs is None else _of_arcs(surface, arcs),
     )
 
@@ -179,6 +180,17 @@ def _require_sane(there: Floats, values: Floats, weights: Floats) -> None:
             f"the surface reaches {reached / radius:.2g} times as far from its middle as the mesh: so few functions do "
             "not follow this mesh; raise the option size or the option fairing, or choose another basis"
         )
+
+
+def _sound(border: Border, size: int) -> Border:
+    """The boundary of a surface; raises FitError for one that goes as far from that of the mesh as that is large."""
+    farthest = border.surface_to_mesh[1]
+    if not farthest <= _TOO_FAR / 2:
+        raise FitError(
+            f"the boundary of the surface goes {farthest:.2g} diagonals away from that of the mesh: beside holes it "
+            f"does not determine {size} functions; take fewer, such as --size {max(size // 8, 50)}, or fill small holes"
+        )
+    return border
 
 
 def _distances(away: Floats, weights: Floats, where: Floats) -> Distances:

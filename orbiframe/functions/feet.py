@@ -39,9 +39,9 @@ def foot_step(jets: Floats, targets: Floats, longest: Floats | float, *, bent: b
     a, b, c = _safe(plane, [x - _dot(gap, second) for x, second in zip(plane, jets[3:6], strict=True)], bent)
     right = _dot(slope[0], gap), _dot(slope[1], gap)
     determinant = np.maximum(a * c - b * b, np.finfo(float).tiny)
-    step = np.stack([c * right[0] - b * right[1], a * right[1] - b * right[0]], axis=1) / determinant[:, None]
-    length = np.linalg.norm(step[:, :1] * slope[0] + step[:, 1:] * slope[1], axis=1)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):  # what is no number is no step
+        step = np.stack([c * right[0] - b * right[1], a * right[1] - b * right[0]], axis=1) / determinant[:, None]
+        length = np.linalg.norm(step[:, :1] * slope[0] + step[:, 1:] * slope[1], axis=1)
         shortened = step * np.minimum(1.0, longest / np.maximum(length, np.finfo(float).tiny))[:, None]
     return np.where(np.isfinite(shortened).all(axis=1)[:, None], shortened, 0.0)
 

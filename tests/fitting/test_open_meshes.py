@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,10 +14,12 @@ from open_shapes import SHAPES, cylinder, square_sheet
 from orbiframe import Config, fit, load_surface
 from orbiframe.errors import ConfigError, FitError, FormatError, TopologyError
 from orbiframe.files import gate, surface_file
+from orbiframe.fitting import accuracy
 from orbiframe.fitting.parts import fit_parts
 from orbiframe.fitting.pipeline import Result
 from orbiframe.meshes.loops import boundary_loops
 from orbiframe.meshes.polyhedron import Polyhedron
+from orbiframe.meshes.repair import split_nonmanifold_vertices
 from orbiframe.meshes.sizes import area
 from orbiframe.meshes.surface_type import surface_type
 from orbiframe.meshes.unions import disjoint_union
@@ -31,6 +34,8 @@ from orbiframe.surfaces import (
 )
 from orbiframe.surfaces.border import inside
 from orbiframe.triangulations import unrolled
+
+HOLES = Path(__file__).parents[3] / "shared" / "meshes" / "polygon_mesh.off"
 
 
 @cache
@@ -199,6 +204,26 @@ def test_textures_are_laid_out_without_a_fold(name: str) -> None:
     joined, face = unrolled(map).joined, map.polyhedron.face
     assert map.inside[face[joined]].all()
     assert map.inside[face[map.polyhedron.twin[joined]]].all()
+
+
+def test_a_boundary_that_goes_far_away_is_an_error(monkeypatch) -> None:
+    """More functions than the mesh determines beside holes: what is seen inside is sound, and the boundary is not."""
+    found = of("bumpy disc")
+    assert accuracy.accuracy_of(found.surface).border is not None
+    border = accuracy.border_of(found.surface)._replace(surface_to_mesh=(3.0, 70.0))
+    monkeypatch.setattr(accuracy, "border_of", lambda _: border)
+    with pytest.raises(FitError, match=r"goes 70 diagonals away .* take fewer, such as --size 62, or fill"):
+        accuracy.accuracy_of(found.surface)
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not HOLES.exists(), reason="the folder shared with meshes to try things on is not here")
+def test_small_holes_do_not_spike() -> None:
+    options = {"boundary": "auto", "progress": False}
+    mesh = split_nonmanifold_vertices(gate.read(HOLES, REGISTRY)).polyhedron
+    with pytest.raises(FitError, match="the boundary of the surface goes"):
+        fit(mesh, **options)
+    assert fit(mesh, size=353, **options).report["boundary"]["rms"] < 2e-3
 
 
 def test_a_closed_mesh_takes_no_notice() -> None:
