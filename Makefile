@@ -19,9 +19,9 @@ quick: $(VENV)/developer  ## the tests that take no time, on all cores
 	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
 lowest: $(VENV)/developer  ## the quick tests with the lowest versions that pyproject.toml allows
-	$(BIN)/python .ci/lowest.py testing pictures studies > $(VENV)/lowest.txt
+	$(BIN)/python .ci/lowest.py testing pictures studies cluster > $(VENV)/lowest.txt
 	$(PYTHON) -m venv $(VENV)-lowest
-	$(VENV)-lowest/bin/pip install --quiet --constraint $(VENV)/lowest.txt --editable ".[testing,pictures,studies]" mpmath jsonschema import-linter hatchling
+	$(VENV)-lowest/bin/pip install --quiet --constraint $(VENV)/lowest.txt --editable ".[testing,pictures,studies,cluster]" mpmath jsonschema import-linter hatchling "pyparsing<3.3"
 	$(VENV)-lowest/bin/python -m pytest --numprocesses auto --dist worksteal
 
 fresh:  ## a fresh environment for each interpreter in PYTHONS: installed from the sdist, and used

@@ -22,6 +22,7 @@ _PATIENCE, _LIMIT = 15, 100
 _SHORT = 0.3
 _DECREMENT = 1e-10
 _SMALLEST_STEP = 1e-6
+_LONGEST_STEP = 500.0  # in units of curvature
 
 
 def minimised(start: Triangulation, weights: Floats) -> Floats:
@@ -52,9 +53,11 @@ def _search(
 ) -> tuple[Floats, float] | None:
     """Points and energy after the longest of 1, 1/2, 1/4, ... steps with enough descent (Armijo), or None.
 
+    The first of them is shorter where rounding of a nearly singular Hessian sends points farther than X has floats.
+
     None too where the energy is not convex, as happens with negative weights.
     """
-    size = 1.0
+    size = min(1.0, _LONGEST_STEP / max(float(np.linalg.norm(step, axis=1).max()), np.finfo(float).tiny))
     while decrement > 0 and size > _SMALLEST_STEP:
         trial = energy.moved(points, size * step)
         new = energy.value(trial)

@@ -47,6 +47,7 @@ def test_bumps_become_a_mesh_where_the_format_has_one(orbiframe, cube, tmp_path)
 @pytest.mark.usefixtures("_no_fit")
 def test_bumps_have_no_exact_form(orbiframe, cube, tmp_path):
     """It is said before the fit, with what to do."""
+    pytest.importorskip("OCP", reason='Open CASCADE is the extra "orbiframe[cad]"')
     ran = orbiframe("fit", cube, "-o", tmp_path / "a.step", "--basis", "gaussian", "--exact")
     assert ran.status == 1
     assert "--basis ps2" in ran.err

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fitted import REGISTRY
-from late import Late
+from late import Late, require
 from open_shapes import SHAPES
 from orbiframe_exact.quad_domain import quad_domain
 
@@ -42,6 +42,7 @@ def off_border(surface: OrbifoldSurface, places: np.ndarray) -> float:
     ],
 )
 def test_the_shell_is_valid_and_ends_at_the_boundary(name: str, tmp_path: Path) -> None:
+    require("OCP.gp")
     surface, path = surface_of(name), tmp_path / "part.step"
     told = gate.export(path, surface, REGISTRY, options={"exact": False})
     assert told["reached"]
@@ -79,6 +80,7 @@ def test_faces_with_geodesic_sides_alone_miss_the_boundary() -> None:
 
 
 def test_exact_patches_of_an_open_surface_are_refused_and_a_few_faces_named(orbiframe, tmp_path: Path) -> None:
+    require("OCP.gp")
     with pytest.raises(FitError, match=r"exact patches do not follow; write a few faces that end there"):
         gate.export(tmp_path / "part.step", surface_of("cylinder"), REGISTRY, options={"exact": True})
     write(tmp_path / "tube.off", SHAPES["cylinder"]())
