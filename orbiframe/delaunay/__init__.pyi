@@ -2,7 +2,7 @@
 
 from .crease_domain import crease_triangulation as crease_triangulation, creased as creased
 from .crease_sites import Asked as Asked
-from .edges_along import Geodesics as Geodesics, edges_along as edges_along, with_edges_along as with_edges_along
+from .geodesic_edges import Geodesics as Geodesics, edges_along as edges_along, with_edges_along as with_edges_along
 from .polygon_fan import polygon_triangulation as polygon_triangulation
 from .site_triangulation import (
     SiteTriangulation as SiteTriangulation,

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orbiframe.delaunay.crease_sites import Asked, crease_sites
-from orbiframe.delaunay.edges_along import Geodesics, edges_along
 from orbiframe.delaunay.forced_edges import with_edge
+from orbiframe.delaunay.geodesic_edges import Geodesics, edges_along
 from orbiframe.delaunay.site_triangulation import delaunay_of_vertices
 from orbiframe.errors import MapError
 from orbiframe.triangulations.crease_chains import Chain, CreaseGraph

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orbiframe.delaunay.edges_along import Geodesics
+from orbiframe.delaunay.geodesic_edges import Geodesics
 from orbiframe.orbifolds.atlas import Points
 from orbiframe.surfaces.border_curve import BorderCurve
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from orbiframe.delaunay.edges_along import with_edges_along
+from orbiframe.delaunay.geodesic_edges import with_edges_along
 from orbiframe.delaunay.site_triangulation import SiteTriangulation, delaunay
 from orbiframe.delaunay.sites import lloyd_step, vertex_points
 from orbiframe.errors import FitError
