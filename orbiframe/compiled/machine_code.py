@@ -15,6 +15,7 @@ from functools import cache
 from importlib.machinery import PathFinder
 from importlib.metadata import version
 from importlib.util import find_spec, module_from_spec
+from threading import Lock
 from typing import Any, NamedTuple
 
 import llvmlite.binding as llvm
@@ -26,6 +27,8 @@ _MATHEMATICS = (
     *("pow", "sin", "cos", "sqrt", "exp", "log", "log10", "fabs", "floor", "ceil", "trunc", "tan", "sinh", "cosh"),
     *("tanh", "asin", "acos", "atan", "atan2", "asinh", "acosh", "atanh", "expm1", "log1p", "fmod", "round"),
 )
+
+_loading = Lock()
 
 
 class MachineCode(NamedTuple):
@@ -55,10 +58,11 @@ def processor() -> tuple[str, str, str]:
 
 def loaded(code: MachineCode) -> Callable[..., Any]:
     """The function, to be called from Python. Each has memory and names of its own."""
-    dynamic, engine = _prepared(), _engine()
-    engine.add_object_file(llvm.ObjectFileRef.from_data(code.code))
-    engine.finalize_object()
-    environments = [_environment(dynamic, engine, *each) for each in code.environments]
+    with _loading:
+        dynamic, engine = _prepared(), _engine()
+        engine.add_object_file(llvm.ObjectFileRef.from_data(code.code))
+        engine.finalize_object()
+        environments = [_environment(dynamic, engine, *each) for each in code.environments]
     address, alive = engine.get_function_address(code.wrapper), (engine, *environments)
     found: Callable[..., Any] = dynamic.make_function(
         sys.modules[__name__], code.name, code.name, address, environments[0], alive
