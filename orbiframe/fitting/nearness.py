@@ -17,12 +17,14 @@ Floats = NDArray[np.float64]
 
 # So many samples tell which of two surfaces is nearer.
 _MOST = 8192
+# A linear fit that is nearer by less than this is no news.
+_MUCH = 1.05
 
 
 def nearer(
     surface: OrbifoldSurface, start: Floats, samples: Samples, both: bool
 ) -> tuple[OrbifoldSurface, tuple[str, ...]]:
-    """A surface, or that of the linear fit that it began with if this is nearer, and then a sentence that says so.
+    """A surface, or that of the linear fit that it began with if this is nearer; if it is much, a sentence says so.
 
     both: whether the distances of the surface from the mesh count as well.
     """
@@ -30,6 +32,8 @@ def nearer(
     before, after = (nearness(each, samples, both=both) for each in (first, surface))
     if after <= before:
         return surface, ()
+    if after <= _MUCH * before:
+        return first, ()
     told = (
         f"sliding left the surface at {after:.2g} of the diagonal and the linear fit at {before:.2g}: that one is kept"
     )

@@ -159,6 +159,7 @@ def test_a_turned_triangle_is_noticed():
 
 @pytest.mark.long
 @pytest.mark.skipif(not SPOT.exists(), reason="shared/meshes is not here")
+@pytest.mark.filterwarnings("ignore:the texture coordinates of the mesh")
 def test_a_cow_of_which_two_triangles_fold():
     surface = fit(SPOT, config(600), REGISTRY).surface
     faces = input_faces(surface)
