@@ -44,7 +44,7 @@ def of(name: str, how: str = "auto", data: str = "facets", size: int = 500) -> R
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("size", [400, 600, 800])
+@pytest.mark.parametrize("size", [400, 800])
 @pytest.mark.parametrize("name", SHAPES)
 def test_it_is_near_inside_and_on_the_boundary_and_does_not_fold_there(name: str, size: int) -> None:
     report = of(name, size=size).report
@@ -218,12 +218,10 @@ def test_a_boundary_that_goes_far_away_is_an_error(monkeypatch) -> None:
 
 @pytest.mark.long
 @pytest.mark.skipif(not HOLES.exists(), reason="the folder shared with meshes to try things on is not here")
-def test_small_holes_do_not_spike() -> None:
-    options = {"boundary": "auto", "progress": False}
+def test_few_functions_follow_small_holes() -> None:
     mesh = split_nonmanifold_vertices(gate.read(HOLES, REGISTRY)).polyhedron
-    with pytest.raises(FitError, match="the boundary of the surface goes"):
-        fit(mesh, **options)
-    assert fit(mesh, size=353, **options).report["boundary"]["rms"] < 2e-3
+    found = fit(mesh, size=353, boundary="auto", progress=False)
+    assert found.report["boundary"]["rms"] < 2e-3
 
 
 def test_a_closed_mesh_takes_no_notice() -> None:
