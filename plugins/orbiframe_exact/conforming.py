@@ -47,10 +47,8 @@ def strips(domain: QuadDomain) -> Iterator[tuple[list[tuple[int, int, bool]], bo
             q, axis = waiting.pop()
             strip.append((q, axis, known[q, axis]))
             for k in (axis, axis + 2):
-                one, other = sides[domain.edge[q, k]].tolist()
-                if other < 0:  # the strip ends at a boundary
-                    continue
-                there = divmod(one if other == 4 * q + k else other, 4)
+                other = next(int(side) for side in sides[domain.edge[q, k]] if side != 4 * q + k)
+                there = divmod(other, 4)
                 back = known[q, axis] ^ bool(domain.rising[q, k] != domain.rising[there])
                 node = there[0], there[1] % 2
                 if node not in known:

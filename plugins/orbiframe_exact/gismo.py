@@ -47,7 +47,6 @@ def write_gismo(
         "<interfaces>",
         *_interfaces(found.domain),
         "</interfaces>",
-        *_boundary(found.domain),
         "</MultiPatch>",
         *(line for quad in range(found.domain.count) for line in _patch(quad, *patches[quad], surface)),
         "</xml>",
@@ -63,9 +62,7 @@ def _interfaces(domain: QuadDomain) -> Iterator[str]:
 
     The direction across an edge keeps its sense if it ends in one patch where it begins in the other.
     """
-    both = domain.sides_of_edges()
-    for edge in np.flatnonzero(both[:, 1] >= 0).tolist():
-        sides = both[edge].tolist()
+    for edge, sides in enumerate(domain.sides_of_edges().tolist()):
         (q, k), (p, m) = (divmod(side, 4) for side in sides)
         along = int(domain.rising[q, k] == domain.rising[p, m])
         across = int((k in (1, 2)) != (m in (1, 2)))
@@ -74,13 +71,6 @@ def _interfaces(domain: QuadDomain) -> Iterator[str]:
         kept = (along, across) if k % 2 == 0 else (across, along)
         numbers = (_FIRST + q, _SIDES[k], _FIRST + p, _SIDES[m], *to, *kept)
         yield " ".join(map(str, numbers))
-
-
-def _boundary(domain: QuadDomain) -> list[str]:
-    """A line for each side at a boundary: patch and side; nothing where there is none."""
-    both = domain.sides_of_edges()
-    lines = [f"{_FIRST + side // 4} {_SIDES[side % 4]}" for side in both[both[:, 1] < 0, 0].tolist()]
-    return ["<boundary>", *lines, "</boundary>"] if lines else []
 
 
 def _patch(quad: int, breaks: tuple[Floats, Floats], poles: Floats, surface: OrbifoldSurface) -> Iterator[str]:

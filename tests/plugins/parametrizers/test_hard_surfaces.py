@@ -8,6 +8,7 @@ import hard_surfaces as hard
 import numpy as np
 import pytest
 from hypothesis import example, given, settings, strategies as st
+from orbiframe_parametrizers import harmonic_energy
 from orbiframe_parametrizers.harmonic import harmonic
 from orbiframe_parametrizers.sphere import sphere
 from reference_meshes import edge_lengths, geometry
@@ -192,3 +193,14 @@ def test_order_and_numbers_do_not_matter(name: str, seed: int) -> None:
 def test_refined_random_triangulations_are_mapped(seed: int) -> None:
     mesh = random_case("genus 2", seed)
     require_lawful(mapped(bisected(mesh, edge_length_for(mesh, 300), True).polyhedron))
+
+
+def test_a_step_beyond_all_floats_is_shortened() -> None:
+    """A direction of descent of length 10^6, as a nearly singular Hessian makes of rounding."""
+    start = mapped(PLATE())
+    energy = harmonic_energy.HarmonicEnergy(start, np.ones(len(start.polyhedron.tail)))
+    points = start.points
+    step, decrement = energy.newton_step(points)
+    long = 1e6 * step / np.linalg.norm(step, axis=1).max()
+    found = harmonic_energy._search(energy, points, energy.value(points), long, decrement)
+    assert found is None or found[1] < energy.value(points)
